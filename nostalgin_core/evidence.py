@@ -1,0 +1,25 @@
+"""What each texel of an elevation rests on: the promise made to historians.
+
+The map flows from `rectify` to the viewer. `PHOTOGRAPHED` texels are never changed by
+any later stage, bit for bit.
+"""
+
+from typing import Final
+
+NOTHING: Final = 0
+PHOTOGRAPHED: Final = 1
+SOFT_EDGE: Final = 2  # photographed, but mixed with what stands before or behind it
+INPAINTED: Final = 3  # hidden in the photo, filled by the inpainter
+BEYOND_FRAME: Final = 4  # outside the photo's exposed frame, filled
+COPIED: Final = 5  # copied from another side of the building
+ASSUMED: Final = 6  # no photograph: a plain volume
+
+NAMES: Final = {
+    NOTHING: "nothing",
+    PHOTOGRAPHED: "photographed",
+    SOFT_EDGE: "photographed at a soft edge",
+    INPAINTED: "inpainted",
+    BEYOND_FRAME: "filled beyond the photo's frame",
+    COPIED: "copied from another side",
+    ASSUMED: "assumed",
+}
