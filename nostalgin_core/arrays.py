@@ -7,7 +7,8 @@ Conventions, for the whole project:
 - Image shapes are `(h, w)`. Photographs are gray, 8 bits, 0 is black.
 - Boxes are half-open and read x0, y0, x1, y1. Quads read top left, top right, bottom
   right, bottom left.
-- Maps are named `b_from_a`, so that neighbours cancel: `c_from_a = c_from_b @ b_from_a`.
+- Maps are named `b_from_a`, so that neighbours cancel:
+  `c_from_a = c_from_b @ b_from_a`.
 - On the ground, east is x and north is y, in metres; up is z. A ring of fronts runs
   anticlockwise seen from above, so that each front, seen from its street, has its start
   on the left and its end on the right.
