@@ -1,0 +1,107 @@
+"""All stages as a plain loop: the oracle that the pipeline must agree with.
+
+No Beam, no store, no worker: one photo after the other, in memory. What the pipeline
+writes for a photo equals what this loop returns for it.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from nostalgin_core import inpaint, matte, photo, placard, quantise, rectify, segment
+from nostalgin_core.records import (
+    Elevation,
+    Instance,
+    Matted,
+    Photo,
+    Placard,
+    Rejection,
+)
+
+STAGES = ("photo", "segment", "placard", "matte", "rectify", "inpaint")
+
+
+@dataclass(frozen=True, slots=True)
+class Networks:
+    """The callables that the stages are given. Without `read`, no placard is read."""
+
+    segment: Callable[..., Any]
+    inpaint: Callable[..., Any]
+    read: Callable[..., Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reconstruction:
+    """Everything the stages made of one photo, as far as they came."""
+
+    photo: Photo | None = None
+    instances: tuple[Instance, ...] = ()
+    placard: Placard | None = None
+    matted: Matted | None = None
+    rectified: tuple[Elevation, ...] = ()
+    elevations: tuple[Elevation, ...] = ()
+    rejections: tuple[Rejection, ...] = field(default=())
+
+
+def board(instances: tuple[Instance, ...]) -> Instance | None:
+    """Choose the placard that the network is surest of."""
+    boards = [one for one in instances if one.category == "placard"]
+    return max(boards, key=lambda one: one.score, default=None)
+
+
+def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, Any]]:
+    """Yield each stage's word and its result, and end with a photo's rejection.
+
+    A caller that wants to know what a stage costs looks at its own clock between two
+    results. A placard that can't be read stops nothing.
+    """
+    picture = photo.decode(data, name=name)
+    yield "photo", picture
+    if isinstance(picture, Rejection):
+        return
+    instances = segment.segment(picture, networks.segment)
+    if isinstance(instances, Rejection):
+        yield "segment", instances
+        return
+    instances = quantise.instances(instances)
+    yield "segment", instances
+    if networks.read is not None:
+        yield "placard", placard.read(picture, board(instances), networks.read)
+    matted = matte.matte(picture, instances)
+    if isinstance(matted, Rejection):
+        yield "matte", matted
+        return
+    matted = quantise.matted(matted)
+    yield "matte", matted
+    rectified = tuple(map(rounded, rectify.rectify(picture, matted)))
+    yield "rectify", rectified
+    views = [one for one in rectified if isinstance(one, Elevation)]
+    yield "inpaint", tuple(inpaint.inpaint(one, networks.inpaint) for one in views)
+
+
+def rounded(one: Elevation | Rejection) -> Elevation | Rejection:
+    """Round an elevation's alpha, and pass a rejection on."""
+    return one if isinstance(one, Rejection) else quantise.elevation(one)
+
+
+def gather(results: Iterator[tuple[str, Any]]) -> Reconstruction:
+    """Collect the results of `steps` into one record."""
+    made: dict[str, Any] = {}
+    rejections: list[Rejection] = []
+    for stage, result in results:
+        if isinstance(result, Rejection):
+            rejections.append(result)
+        elif stage == "rectify":
+            rejections += [one for one in result if isinstance(one, Rejection)]
+            made["rectified"] = tuple(o for o in result if isinstance(o, Elevation))
+        else:
+            made[FIELD.get(stage, stage)] = result
+    return Reconstruction(**made, rejections=tuple(rejections))
+
+
+FIELD = {"segment": "instances", "matte": "matted", "inpaint": "elevations"}
+
+
+def photograph(data: bytes, networks: Networks, *, name: str) -> Reconstruction:
+    """Take one photo through every stage, from its bytes to its elevations."""
+    return gather(steps(data, networks, name=name))

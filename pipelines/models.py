@@ -1,0 +1,73 @@
+"""The networks as callables, checked against their lock, one session a process."""
+
+import json
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any, Final
+
+LOCK: Final = "models.lock"
+PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
+
+
+class Unlocked(ValueError):  # noqa: N818 - it reads as what it is about
+    """A network that no lock vouches for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Models:
+    """A folder with ONNX files and the lock that names their SHA-256."""
+
+    folder: str = str(PACKAGED)
+
+    def sha256(self, name: str) -> str:
+        """Look up what a network's file must hash to.
+
+        Raises:
+            Unlocked: if there is no lock, or it does not name this network.
+        """
+        path = Path(self.folder) / LOCK
+        if not path.is_file():
+            raise Unlocked(f"{self.folder} has no {LOCK}: name a folder that has one")
+        lock = json.loads(path.read_text())
+        if name not in lock:
+            raise Unlocked(f"{path} names no network {name!r}, only {sorted(lock)}")
+        return lock[name]
+
+    def load(self, name: str) -> Callable[..., Any]:
+        """Load a network, and refuse a file that is not the one the lock names."""
+        from nostalgin_core import session
+
+        path = Path(self.folder) / f"{name}.onnx"
+        if not path.is_file():
+            raise Unlocked(f"{path} is missing: name a folder that has it")
+        return session.load(path.read_bytes(), self.sha256(name))
+
+    def networks(self, *, placard: bool) -> Any:
+        """Load everything that the plain loop is given."""
+        from nostalgin_core.reconstruct import Networks
+
+        read = reader() if placard else None
+        return Networks(self.load("segment"), self.load("inpaint"), read)
+
+
+def reader() -> Callable[..., Any]:
+    """Load the reader of number boards, whose networks come with its package."""
+    from rapidocr_onnxruntime import RapidOCR
+
+    return RapidOCR(intra_op_num_threads=1, inter_op_num_threads=1)
+
+
+def one_thread() -> None:
+    """Keep the libraries of this process from starting threads of their own.
+
+    Several workers with a thread each do a fifth more work in the same CPU time than
+    the libraries' defaults. It must be called before the libraries are first used.
+    """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    import cv2
+
+    cv2.setNumThreads(1)
