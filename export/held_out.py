@@ -1,0 +1,95 @@
+"""A network is judged on photographs whose labels it never trained on.
+
+Figures are means over photos: precision, recall and l1 of all visible front (the
+paper's table 1, before matting), the share of fronts found at an overlap of a half,
+the overlap of target fronts (median), and the share of what hides fronts that was
+found. Far rows that cannot be told apart do not count.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+
+from export.mask_rcnn import MaskRCNN
+from export.segmentation_data import Sample, fill
+from nostalgin_core.measure_segmentation import agreement, overlap
+from nostalgin_core.records import Box, Instance, Photo
+from nostalgin_core.segment import Network, segment
+
+
+def as_callable(network: MaskRCNN) -> Network:
+    """Make a torch network look like the exported one: arrays in, arrays out."""
+
+    @torch.inference_mode()
+    def call(gray: np.ndarray) -> tuple[np.ndarray, ...]:
+        image = torch.from_numpy(gray).to(memory_format=torch.channels_last)
+        return tuple(part.numpy() for part in network(image))
+
+    return call
+
+
+def figures(network: MaskRCNN, samples: Sequence[Sample]) -> dict[str, float]:
+    """Judge a network in evaluation mode on labelled photos."""
+    rows = [judged(s, found(as_callable(network), s)) for s in samples]
+    names = [n for n in rows[0] if n not in ("fronts", "targets")]
+    means = {n: [r[n] for r in rows if not np.isnan(r[n])] for n in names}
+    result = {n: float(np.mean(v)) for n, v in means.items() if v}
+    fronts = np.array([q for r in rows for q in r["fronts"]])
+    targets = np.array([q for r in rows for q in r["targets"]])
+    result["fronts_found"] = float((fronts >= 0.5).mean())
+    if len(targets):
+        result["target_overlap"] = float(np.median(targets))
+        result["target_found"] = float((targets >= 0.5).mean())
+    return {n: round(v, 4) for n, v in result.items()}
+
+
+def found(network: Network, sample: Sample) -> tuple[Instance, ...]:
+    """Segment a sample, frame and all; nothing where it was rejected."""
+    height, width = sample.image.shape
+    photo = Photo(sample.name, sample.image, Box(0, 0, width, height))
+    return segment(photo, network) or ()
+
+
+def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
+    """Compare what was found in one photo with its labels."""
+    shape = sample.image.shape
+    fronts = [t for t in sample.things if t.category == "facade" and t.scored]
+    far = [t for t in sample.things if t.category == "facade" and not t.scored]
+    hidden = _union([fill(t.polygon, shape) for t in sample.things if t.layer], shape)
+    whole = [fill(t.polygon, shape) for t in fronts]
+    every = _union(whole, shape)
+    counted = ~(_union([fill(t.polygon, shape) for t in far], shape) & ~every)
+    masks = [(i.category, _whole(i, shape) > 0.5) for i in instances]
+    facades = [m for category, m in masks if category == "facade"]
+    before = _union([m for category, m in masks if category != "facade"], shape)
+    claimed = _union(facades, shape) & ~before
+    score = agreement(
+        claimed.astype(np.float32), every & ~hidden, counted, threshold=0.5
+    )
+    overlaps = [
+        max((overlap(m & ~hidden, w & ~hidden) for m in facades), default=0.0)
+        for w in whole
+    ]
+    aims = [q for t, q in zip(fronts, overlaps, strict=True) if t.target]
+    on = hidden & every
+    return {
+        "precision": score.precision,
+        "recall": score.recall,
+        "l1": score.l1,
+        "occluders": (before & on).sum() / on.sum() if on.any() else float("nan"),
+        "occluders_false": (before & every & ~hidden).sum() / max(1, every.sum()),
+        "fronts": overlaps,
+        "targets": [max(aims)] if aims else [],
+    }
+
+
+def _union(masks: Sequence[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
+    return np.any(masks, axis=0) if len(masks) else np.zeros(shape, bool)
+
+
+def _whole(instance: Instance, shape: tuple[int, int]) -> np.ndarray:
+    canvas = np.zeros(shape, np.float32)
+    x0, y0, x1, y1 = instance.box
+    canvas[y0:y1, x0:x1] = instance.probability
+    return canvas

@@ -1,0 +1,213 @@
+"""A small Mask R-CNN finds fronts and what hides them in one gray photograph.
+
+He et al., "Mask R-CNN", ICCV 2017, on MobileNetV2 (Sandler et al., CVPR 2018) with a
+feature pyramid of 128 channels: 6.7 million parameters. The backbone carries no batch
+norm (it was folded into the convolutions), so that training with one photo a pass
+needs nothing special.
+
+Input: gray values 0 to 255, shape (n, 1, h, w), h and w multiples of 32. A detection
+is a box in input pixels, a label (its place in `CATEGORIES`, from 1), a score and a
+mask of probabilities over its box.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+from torchvision.models.detection.anchor_utils import AnchorGenerator
+from torchvision.models.detection.faster_rcnn import FastRCNNPredictor, TwoMLPHead
+from torchvision.models.detection.image_list import ImageList
+from torchvision.models.detection.mask_rcnn import MaskRCNNHeads, MaskRCNNPredictor
+from torchvision.models.detection.roi_heads import RoIHeads
+from torchvision.models.detection.rpn import RegionProposalNetwork, RPNHead
+from torchvision.ops import FeaturePyramidNetwork, MultiScaleRoIAlign
+from torchvision.ops.feature_pyramid_network import LastLevelMaxPool
+
+from nostalgin_core.segment import CATEGORIES
+
+# Expansion, channels, repeats, stride: table 2 of the MobileNetV2 paper.
+STAGES = (
+    (1, 16, 1, 1),
+    (6, 24, 2, 2),
+    (6, 32, 3, 2),
+    (6, 64, 4, 2),
+    (6, 96, 3, 1),
+    (6, 160, 3, 2),
+    (6, 320, 1, 1),
+)
+TAPS = (2, 5, 12, 16)  # the last blocks at strides 4, 8, 16 and 32
+CHANNELS = 128  # of the pyramid; 256 doubles the time
+FROZEN_BLOCKS = 6  # strides 2 to 8: edges are edges in any decade
+PROPOSING = ("1", "2", "3", "pool")  # stride 4 would double the work and find nothing
+
+
+class SameConv(nn.Conv2d):
+    """A convolution padded as TensorFlow pads inputs of even size."""
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Keep the size at stride 1; halve it at stride 2, padding right and below."""
+        if self.kernel_size[0] == 3:
+            x = F.pad(x, (0, 1, 0, 1) if self.stride[0] == 2 else (1, 1, 1, 1))
+        return F.conv2d(x, self.weight, self.bias, self.stride, 0, 1, self.groups)
+
+
+class Bottleneck(nn.Module):
+    """Widens, filters each channel by itself, and narrows again."""
+
+    def __init__(self, narrow_in: int, narrow_out: int, stride: int, widening: int):
+        super().__init__()
+        wide = narrow_in * widening
+        self.expand = SameConv(narrow_in, wide, 1) if widening != 1 else None
+        self.depthwise = SameConv(wide, wide, 3, stride, groups=wide)
+        self.project = SameConv(wide, narrow_out, 1)
+        self.residual = stride == 1 and narrow_in == narrow_out
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Map (n, narrow_in, h, w) to (n, narrow_out, h / stride, w / stride)."""
+        y = x if self.expand is None else F.relu6(self.expand(x))
+        y = self.project(F.relu6(self.depthwise(y)))
+        return x + y if self.residual else y
+
+
+class MobileNetV2(nn.Module):
+    """The backbone's seven stages, tapped at four strides."""
+
+    def __init__(self):
+        super().__init__()
+        self.stem = SameConv(1, 32, 3, 2)
+        blocks, narrow = [], 32
+        for widening, channels, repeats, stride in STAGES:
+            for i in range(repeats):
+                step = stride if i == 0 else 1
+                blocks.append(Bottleneck(narrow, channels, step, widening))
+                narrow = channels
+        self.blocks = nn.ModuleList(blocks)
+
+    def forward(self, x: Tensor) -> dict[str, Tensor]:
+        """Return features at strides 4, 8, 16 and 32, named "0" to "3"."""
+        x = F.relu6(self.stem(x))
+        taps = {}
+        for i, block in enumerate(self.blocks):
+            x = block(x)
+            if i in TAPS:
+                taps[str(len(taps))] = x
+        return taps
+
+
+class Backbone(nn.Module):
+    """MobileNetV2 and a feature pyramid with one more level at stride 64."""
+
+    def __init__(self):
+        super().__init__()
+        self.body = MobileNetV2()
+        widths = [24, 32, 96, 320]
+        self.fpn = FeaturePyramidNetwork(widths, CHANNELS, LastLevelMaxPool())
+
+    def forward(self, x: Tensor) -> dict[str, Tensor]:
+        """Return five levels of `CHANNELS` channels each."""
+        return self.fpn(self.body(x))
+
+
+class MaskRCNN(nn.Module):
+    """Backbone, region proposals, box head and mask head in one module."""
+
+    def __init__(self, *, detections: int = 40, score: float = 0.1):
+        """Keep at most `detections` things, each surer than `score`.
+
+        40 is twice what a photograph of the training set shows; every mask costs time.
+        """
+        super().__init__()
+        self.backbone = Backbone()
+        self.rpn = _proposals()
+        self.roi_heads = _heads(detections, score)
+
+    def forward(self, gray: Tensor, targets: list[dict[str, Tensor]] | None = None):
+        """Return (boxes, labels, scores, masks) of one photo, or losses if training."""
+        height, width = gray.shape[-2:]
+        images = ImageList(gray, [(height, width)] * gray.shape[0])
+        features = self.backbone(gray / 127.5 - 1)
+        coarse = {level: features[level] for level in PROPOSING}
+        proposals, rpn_losses = self.rpn(images, coarse, targets)
+        found, losses = self.roi_heads(features, proposals, images.image_sizes, targets)
+        if self.training:
+            return rpn_losses | losses
+        first = found[0]
+        return first["boxes"], first["labels"], first["scores"], first["masks"][:, 0]
+
+
+def _proposals() -> RegionProposalNetwork:
+    sizes = ((48,), (96,), (192,), (384,))
+    # Fronts are up to three times as tall as wide, rows of cars as wide as tall.
+    anchors = AnchorGenerator(sizes, ((0.33, 0.7, 1.4, 3.0),) * 4)
+    return RegionProposalNetwork(
+        anchors,
+        RPNHead(CHANNELS, 4),
+        fg_iou_thresh=0.7,
+        bg_iou_thresh=0.3,
+        batch_size_per_image=256,
+        positive_fraction=0.5,
+        pre_nms_top_n={"training": 600, "testing": 300},
+        post_nms_top_n={"training": 400, "testing": 150},
+        nms_thresh=0.7,
+    )
+
+
+def _heads(detections: int, score: float) -> RoIHeads:
+    levels = ["0", "1", "2", "3"]
+    classes = len(CATEGORIES) + 1
+    return RoIHeads(
+        MultiScaleRoIAlign(levels, 7, 2),
+        TwoMLPHead(CHANNELS * 49, 512),
+        FastRCNNPredictor(512, classes),
+        fg_iou_thresh=0.5,
+        bg_iou_thresh=0.5,
+        batch_size_per_image=128,
+        positive_fraction=0.25,
+        bbox_reg_weights=None,
+        score_thresh=score,
+        nms_thresh=0.5,
+        detections_per_img=detections,
+        mask_roi_pool=MultiScaleRoIAlign(levels, 14, 2),
+        mask_head=MaskRCNNHeads(CHANNELS, (CHANNELS,) * 4, 1),
+        mask_predictor=MaskRCNNPredictor(CHANNELS, CHANNELS, classes),
+    )
+
+
+def load_weights(network: MaskRCNN, weights: Mapping[str, np.ndarray]) -> MaskRCNN:
+    """Put named arrays into the network, whatever precision they were kept in.
+
+    A stem that saw colour is summed over its three inputs: gray, three times, is what
+    it was shown. Raises RuntimeError where a name is missing or has another shape.
+    """
+    state = {k: torch.from_numpy(v.astype(np.float32)) for k, v in weights.items()}
+    stem = "backbone.body.stem.weight"
+    if stem in state:
+        state[stem] = state[stem].sum(1, keepdim=True)
+    network.load_state_dict(state)
+    return network.to(memory_format=torch.channels_last)  # halves the time on a CPU
+
+
+def freeze(network: MaskRCNN) -> None:
+    """Leave the first, widest stages as they are: they need no gradient."""
+    body = network.backbone.body
+    for part in (body.stem, *body.blocks[:FROZEN_BLOCKS]):
+        part.requires_grad_(False)
+
+
+def read_weights(path: Path) -> dict[str, np.ndarray]:
+    """Read arrays named as in `state_dict` from `.npz`, exported `.onnx` or `.pt`.
+
+    Of a checkpoint (`.pt`) the averaged weights are read.
+    """
+    if path.suffix == ".pt":
+        average = torch.load(path, weights_only=True)["average"]
+        return {name: value.numpy() for name, value in average.items()}
+    if path.suffix == ".onnx":
+        from export.mask_rcnn_onnx import weights_of
+
+        return weights_of(path)
+    with np.load(path) as arrays:
+        return {name: arrays[name] for name in arrays.files}

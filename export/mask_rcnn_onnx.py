@@ -1,0 +1,147 @@
+"""The trained network leaves torch as one ONNX file, and proves that it is the same.
+
+Weights are kept in half precision and cast on loading: 13 MB instead of 27. They keep
+their names, so that training goes on from the shipped file. The legacy exporter is used
+because the newer one fails in torchvision's non-maximum suppression.
+
+    python -m export.mask_rcnn_onnx --weights CHECKPOINT --into segment.onnx
+"""
+
+import argparse
+import hashlib
+import io
+import json
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+import onnx
+import torch
+from jaxtyping import Float32
+from onnx import TensorProto, helper, numpy_helper
+
+from export.mask_rcnn import MaskRCNN, load_weights, read_weights
+from nostalgin_core import session
+from nostalgin_core.segment import prepared
+
+OPSET = 17
+OUTPUTS = ("boxes", "labels", "scores", "masks")
+CAST = "|half"  # ends the names of weights that are stored in half precision
+SMALLEST_HALVED = 64  # biases weigh nothing and stay exact
+TOLERANCE = 0.05  # px, and hundredths of that in scores: rounding, added up
+
+
+def export(network: MaskRCNN, example: Float32[np.ndarray, "1 1 h w"]) -> bytes:
+    """Return the network as ONNX, for images of any size in multiples of 32.
+
+    The example should show things of every size, though only shapes are traced.
+    """
+    buffer = io.BytesIO()
+    with warnings.catch_warnings():  # the tracer tells of every size it sees
+        warnings.simplefilter("ignore")
+        torch.onnx.export(
+            network.eval(),
+            (torch.from_numpy(example),),
+            buffer,
+            opset_version=OPSET,
+            input_names=["gray"],
+            output_names=list(OUTPUTS),
+            dynamic_axes={"gray": {2: "h", 3: "w"}} | {o: {0: "n"} for o in OUTPUTS},
+            do_constant_folding=False,
+            dynamo=False,
+        )
+    return halved(onnx.load_from_string(buffer.getvalue())).SerializeToString()
+
+
+def halved(model: onnx.ModelProto) -> onnx.ModelProto:
+    """Store the large weights in half precision, with a cast where they are used."""
+    casts = []
+    for weight in model.graph.initializer:
+        array = numpy_helper.to_array(weight)
+        if weight.data_type != TensorProto.FLOAT or array.size < SMALLEST_HALVED:
+            continue
+        name = weight.name
+        half = numpy_helper.from_array(array.astype(np.float16), name + CAST)
+        weight.CopyFrom(half)
+        casts.append(helper.make_node("Cast", [name + CAST], [name], to=1))
+    nodes = [*casts, *model.graph.node]
+    del model.graph.node[:]
+    model.graph.node.extend(nodes)
+    onnx.checker.check_model(model, full_check=True)
+    return model
+
+
+def weights_of(path: Path) -> dict[str, np.ndarray]:
+    """Read the named weights back out of an exported file."""
+    model = onnx.load(str(path))
+    arrays = {w.name: numpy_helper.to_array(w) for w in model.graph.initializer}
+    named = {k.removesuffix(CAST): v for k, v in arrays.items()}
+    return {k: v for k, v in named.items() if k.startswith(("backbone", "rpn", "roi"))}
+
+
+def rounded(network: MaskRCNN) -> MaskRCNN:
+    """Round a network's weights as the file will keep them."""
+    state = {k: v.numpy() for k, v in network.state_dict().items()}
+    half = {
+        k: v.astype(np.float16) if v.size >= SMALLEST_HALVED else v
+        for k, v in state.items()
+    }
+    return load_weights(MaskRCNN(), half).eval()
+
+
+@torch.inference_mode()
+def disparity(
+    network: MaskRCNN, model: bytes, images: Sequence[Float32[np.ndarray, "1 1 h w"]]
+) -> float:
+    """Return the largest difference of boxes (in px), scores or masks over images.
+
+    It is infinite where the two do not find the same number of the same things.
+    """
+    ours = session.load(model, hashlib.sha256(model).hexdigest())
+    worst = 0.0
+    for image in images:
+        want = [part.numpy() for part in network(torch.from_numpy(image))]
+        got = ours(image)
+        if want[1].tolist() != got[1].tolist():
+            return float("inf")
+        parts = zip(want, got, strict=True)
+        worst = max(worst, *(float(np.abs(a - b).max(initial=0)) for a, b in parts))
+    return worst
+
+
+def lock(folder: Path) -> None:
+    """Write `models.lock`: the SHA-256 of every model in the folder."""
+    sums = {
+        p.name: hashlib.sha256(p.read_bytes()).hexdigest()
+        for p in sorted(folder.glob("*.onnx"))
+    }
+    (folder / "models.lock").write_text(json.dumps(sums, indent=2) + "\n")
+
+
+def main() -> None:
+    """Export, prove parity on labelled photographs, write the file and its lock."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--weights", type=Path, required=True, help=".npz or .pt")
+    parser.add_argument("--photos", type=Path, nargs="+", required=True)
+    parser.add_argument("--into", type=Path, required=True)
+    args = parser.parse_args()
+    network = rounded(load_weights(MaskRCNN(), read_weights(args.weights)))
+    images = [_image(path) for path in args.photos]
+    model = export(network, images[0])
+    worst = disparity(network, model, images)
+    if not worst < TOLERANCE:
+        raise SystemExit(f"the exported network differs by {worst}; nothing written")
+    args.into.write_bytes(model)
+    lock(args.into.parent)
+    print(f"{args.into}: {len(model) / 1e6:.1f} MB, differs by {worst:.2g} at most")
+
+
+def _image(path: Path) -> Float32[np.ndarray, "1 1 h w"]:
+    gray = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    return prepared(gray, short_px=640, long_px=1344)[None, None]
+
+
+if __name__ == "__main__":
+    main()

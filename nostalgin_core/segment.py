@@ -1,0 +1,117 @@
+"""The network's few boxes and small masks become things in a photo.
+
+The photo's exposed frame is resized so that its short side is what the network was
+trained on, each side a multiple of the network's coarsest stride. A detection brings a
+coarse mask of probabilities over its box; it is laid over the box bilinearly, with the
+outer half of its border texels cut off, as Mask R-CNN's masks are defined (He et al.
+2017, section 3).
+"""
+
+from collections.abc import Callable
+from typing import get_args
+
+import cv2
+import numpy as np
+from jaxtyping import Float, Float32, Int
+
+from nostalgin_core.arrays import Gray, Probability
+from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
+
+CATEGORIES: tuple[Category, ...] = get_args(Category)
+STRIDE_PX = 32
+
+Network = Callable[[Float32[np.ndarray, "1 1 h w"]], tuple[np.ndarray, ...]]
+"""Maps gray 0 to 255 to boxes (n 4), labels from 1 (n), scores (n), masks (n m m)."""
+
+
+def segment(
+    photo: Photo,
+    network: Network,
+    *,
+    short_px: int = 640,
+    long_px: int = 1344,
+    facade_score: float = 0.4,
+    occluder_score: float = 0.4,
+) -> tuple[Instance, ...] | Rejection:
+    """Find fronts and what hides them, surest first.
+
+    640 px is the scale at which the network was trained; `long_px` bounds memory on
+    panoramas. Scores below the two thresholds are dropped.
+    """
+    x0, y0, x1, y1 = photo.frame
+    frame = photo.image[y0:y1, x0:x1]
+    gray = prepared(frame, short_px=short_px, long_px=long_px)
+    boxes, labels, scores, masks = network(gray[None, None])
+    scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
+    found = []
+    for i in np.argsort(-scores, kind="stable"):
+        category = CATEGORIES[int(labels[i]) - 1]
+        least = facade_score if category == "facade" else occluder_score
+        if scores[i] < least:
+            continue
+        placed = laid_over(masks[i], boxes[i] * scale, frame.shape)
+        if placed is not None:
+            box, probability = placed
+            here = Box(box.x0 + x0, box.y0 + y0, box.x1 + x0, box.y1 + y0)
+            found.append(Instance(category, float(scores[i]), here, probability))
+    if not any(f.category == "facade" for f in found):
+        return Rejection(
+            photo.key,
+            "segment",
+            "no facade found",
+            f"no front scored {facade_score} or more; photograph shows none, or is too "
+            "dark or too small to tell: mask it by hand, or lower facade_score",
+        )
+    return tuple(found)
+
+
+def prepared(frame: Gray, *, short_px: int, long_px: int) -> Float32[np.ndarray, "h w"]:
+    """Resize to the network's scale, each side to the nearest multiple of 32."""
+    height, width = frame.shape
+    scale = min(short_px / min(height, width), long_px / max(height, width))
+    rows, columns = (
+        max(STRIDE_PX, round(side * scale / STRIDE_PX) * STRIDE_PX)
+        for side in (height, width)
+    )
+    shrunk = rows * columns < height * width
+    how = cv2.INTER_AREA if shrunk else cv2.INTER_LINEAR
+    return cv2.resize(frame, (columns, rows), interpolation=how).astype(np.float32)
+
+
+def laid_over(
+    mask: Float[np.ndarray, "m m"],
+    box: Float[np.ndarray, " 4"],
+    shape: tuple[int, int],
+) -> tuple[Box, Probability] | None:
+    """Stretch a mask over its box; None where the box holds no whole pixel.
+
+    Texel j of m lies at x0 + (j + 1/2) (x1 - x0) / m - 1/2 on the photo's pixel grid.
+    """
+    height, width = shape
+    x0, y0 = np.maximum(np.floor(box[:2]), 0).astype(int)
+    x1, y1 = np.minimum(np.ceil(box[2:]), (width, height)).astype(int)
+    if x1 <= x0 or y1 <= y0:
+        return None
+    texels = mask.shape[0]
+    us = _texel_of(np.arange(x0, x1), box[0], box[2], texels)
+    vs = _texel_of(np.arange(y0, y1), box[1], box[3], texels)
+    across = _interpolation(us, texels)
+    down = _interpolation(vs, texels)
+    probability = down @ mask.astype(np.float32) @ across.T
+    return Box(int(x0), int(y0), int(x1), int(y1)), np.clip(probability, 0, 1)
+
+
+def _texel_of(
+    pixels: Int[np.ndarray, " n"], low: float, high: float, texels: int
+) -> Float[np.ndarray, " n"]:
+    """Return where pixel centres fall among texels, held inside the mask."""
+    size = max(high - low, 1.0)
+    return np.clip((pixels + 0.5 - low) / size * texels - 0.5, 0, texels - 1)
+
+
+def _interpolation(
+    places: Float[np.ndarray, " n"], texels: int
+) -> Float32[np.ndarray, "n m"]:
+    """Return the weights that interpolate linearly at the given places."""
+    distance = np.abs(places[:, None] - np.arange(texels)[None])
+    return np.maximum(0, 1 - distance).astype(np.float32)

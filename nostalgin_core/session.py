@@ -1,0 +1,48 @@
+"""A checked ONNX file becomes a plain function from arrays to arrays.
+
+The file's bytes must have the SHA-256 that `models.lock` promises; a network that was
+swapped or cut short would otherwise answer, and answer wrongly.
+"""
+
+import hashlib
+from collections.abc import Callable
+
+import numpy as np
+import onnxruntime
+
+Session = Callable[..., tuple[np.ndarray, ...]]
+
+
+class ModelChanged(Exception):
+    """A model file is not the one that was promised."""
+
+
+def load(data: bytes, sha256: str, *, threads: int = 1) -> Session:
+    """Return a function that runs the network on its inputs, in their order.
+
+    One thread is right where several processes share the cores. The arena of memory is
+    not kept between calls: photographs differ in size, and it would only grow.
+
+    Raises ModelChanged where the bytes have another checksum.
+    """
+    found = hashlib.sha256(data).hexdigest()
+    if found != sha256:
+        raise ModelChanged(
+            f"model has SHA-256 {found}, but {sha256} was promised: install the "
+            "package again, or, if the file was retrained on purpose, write its new "
+            "checksum to models.lock"
+        )
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.enable_cpu_mem_arena = False
+    options.log_severity_level = 3  # warnings are for those who make models
+    runtime = onnxruntime.InferenceSession(
+        data, options, providers=["CPUExecutionProvider"]
+    )
+    names = [given.name for given in runtime.get_inputs()]
+
+    def run(*arrays: np.ndarray) -> tuple[np.ndarray, ...]:
+        return tuple(runtime.run(None, dict(zip(names, arrays, strict=True))))
+
+    return run
