@@ -8,14 +8,27 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from nostalgin_core import inpaint, matte, photo, placard, quantise, rectify, segment
+import numpy as np
+
+from nostalgin_core import (
+    evidence,
+    inpaint,
+    matte,
+    photo,
+    placard,
+    quantise,
+    rectify,
+    segment,
+)
 from nostalgin_core.records import (
     Elevation,
+    Facade,
     Instance,
     Matted,
     Photo,
     Placard,
     Rejection,
+    Seen,
 )
 
 STAGES = ("photo", "segment", "placard", "matte", "rectify", "inpaint")
@@ -105,3 +118,22 @@ FIELD = {"segment": "instances", "matte": "matted", "inpaint": "elevations"}
 def photograph(data: bytes, networks: Networks, *, name: str) -> Reconstruction:
     """Take one photo through every stage, from its bytes to its elevations."""
     return gather(steps(data, networks, name=name))
+
+
+def seen(key: str, facade: Facade, view: Elevation) -> Seen:
+    """Sum up a facade in the numbers that `assign` weighs."""
+    somewhere = np.count_nonzero(view.evidence != evidence.NOTHING)
+    by_camera = (evidence.PHOTOGRAPHED, evidence.SOFT_EDGE)
+    photographed = np.count_nonzero(np.isin(view.evidence, by_camera))
+    return Seen(
+        photo=key,
+        facade=facade.index,
+        target=facade.target,
+        target_score=facade.target_score,
+        score=facade.score,
+        aspect=view.aspect,
+        aspect_sd=view.aspect_sd,
+        left_px=float(view.quad[:, 0].mean()),
+        area_px=float(facade.alpha.sum(dtype=np.float64)),
+        photographed=photographed / max(somewhere, 1),
+    )

@@ -53,6 +53,34 @@ class Models:
         return Networks(self.load("segment"), self.load("inpaint"), read)
 
 
+class Once:
+    """A network that is loaded when it is first called, and once in a process.
+
+    It can be sent to a worker; the network itself stays behind.
+    """
+
+    def __init__(self, models: Models, name: str) -> None:
+        """Remember which network, and load nothing."""
+        from apache_beam.utils.shared import Shared
+
+        self._models, self._name = models, name
+        self._shared, self._network = Shared(), None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the network behind."""
+        return self.__dict__ | {"_network": None}
+
+    def __call__(self, *arrays: Any) -> Any:
+        """Run the network."""
+        if self._network is None:
+            self._network = self._shared.acquire(self._load)
+        return self._network(*arrays)
+
+    def _load(self) -> Callable[..., Any]:
+        one_thread()
+        return self._models.load(self._name)
+
+
 def reader() -> Callable[..., Any]:
     """Load the reader of number boards, whose networks come with its package."""
     from rapidocr_onnxruntime import RapidOCR

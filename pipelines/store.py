@@ -55,10 +55,6 @@ class Store:
         where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
         return pafs.FileSystem.from_uri(where)
 
-    def path(self, stage: str, version: str, key: str) -> str:
-        """Name an artifact, relative to the city folder."""
-        return f"{ARTIFACTS}/{stage}/{version}/{key[:2]}/{key}.parquet"
-
     def exists(self, name: str) -> bool:
         """Tell whether a file is there."""
         system, root = self._open()

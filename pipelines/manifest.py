@@ -1,0 +1,274 @@
+"""The manifest: which photo shows which fronts, a row for each pair of the two.
+
+`index` writes it twice, as `manifest.parquet` for programs and `manifest.csv` for
+people. The Parquet file remembers the hash of the CSV it was written with, so a CSV
+that was mended by hand is noticed, and wins. Columns are documented in
+`docs/manifest.md`; columns that are not known are kept.
+"""
+
+import csv
+import hashlib
+import io
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any, Final
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from nostalgin_core.records import Front, Rejection
+from pipelines import tables
+from pipelines.store import Store, parquet_bytes
+
+PARQUET: Final = "manifest.parquet"
+CSV: Final = "manifest.csv"
+CSV_HASH: Final = b"nostalgin.csv_sha256"
+PHOTO: Final = pa.schema(
+    [
+        pa.field("root", pa.string()),  # folder that `photo` is relative to
+        pa.field("photo", pa.string()),  # empty: a front without a photo
+        pa.field("credit", pa.string()),
+    ]
+)
+FRONT: Final = tables.schema(Front)
+SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
+REQUIRED: Final = ("photo", "front_id", "block", "lot")
+ASSUMED_WIDTH_M: Final = 7.62  # 25 feet, the common lot of New York
+FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
+YES: Final = ("true", "1", "yes")
+NO: Final = ("false", "0", "no", "")
+
+
+class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
+    """A manifest that can't be read at all, with what to do about it."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One photo that may show one front; either may be missing, not both."""
+
+    number: int  # as a spreadsheet counts
+    root: str
+    photo: str
+    front: Front | None
+    credit: str
+    cells: dict[str, Any] = field(compare=False)  # all that was written in the row
+
+    @property
+    def key(self) -> str:
+        """Name the row in rejections."""
+        return f"{CSV} row {self.number}"
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """The rows that can be used, those that can't, and what else was noticed."""
+
+    rows: tuple[Row, ...]
+    rejections: tuple[Rejection, ...]
+    warnings: tuple[str, ...]
+    sha256: str  # of what was read
+
+
+def row_of(
+    photo: str, front: Front | None, *, root: str, credit: str
+) -> dict[str, Any]:
+    """Write a row's cells."""
+    cells = dict.fromkeys(FRONT.names) if front is None else tables.to_row(front)
+    return {"root": root, "photo": photo, "credit": credit} | cells
+
+
+def write(store: Store, rows: list[dict[str, Any]]) -> None:
+    """Write the manifest in both forms, in the order of block, ring, rank and photo."""
+    known = SCHEMA.names
+    others = sorted({name for row in rows for name in row} - set(known))
+    ordered = sorted(rows, key=place)
+    text = to_csv(ordered, [*known, *others]).encode()
+    extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
+    table = pa.Table.from_pylist(ordered, extended)
+    mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
+    store.write_bytes(CSV, text)
+    store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
+
+
+def place(row: dict[str, Any]) -> tuple[Any, ...]:
+    """Order rows as one would walk: by block, ring, round the ring, then by photo."""
+    return (
+        row["block"] is None,
+        natural(row["block"]),
+        row["ring"] or 0,
+        row["rank"] or 0,
+        row["front_id"] or "",
+        row["photo"] or "",
+    )
+
+
+def natural(text: str | None) -> tuple[int, str]:
+    """Order numbers by value and words after them."""
+    return (int(text), "") if text and text.isdecimal() else (10**9, text or "")
+
+
+def to_csv(rows: list[dict[str, Any]], names: list[str]) -> str:
+    """Write rows as comma-separated values."""
+    sink = io.StringIO()
+    writer = csv.DictWriter(sink, names, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return sink.getvalue()
+
+
+def read(store: Store) -> Manifest:
+    """Read the manifest: the CSV if it was mended by hand, else the Parquet file.
+
+    Raises:
+        Unusable: if there is none, or if what there is makes no sense.
+    """
+    mended, parquet = optional(store, CSV), optional(store, PARQUET)
+    if mended is None and parquet is None:
+        raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
+    if parquet is not None:
+        table = parsed(parquet, store.root)
+        mark = (table.schema.metadata or {}).get(CSV_HASH, b"").decode()
+        if mended is None or hashlib.sha256(mended).hexdigest() == mark:
+            return checked(table.to_pylist(), table.column_names, parquet, PARQUET)
+    assert mended is not None
+    names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
+    return checked(rows, names, mended, CSV)
+
+
+def optional(store: Store, name: str) -> bytes | None:
+    """Read a file if it is there."""
+    return store.read_bytes(name) if store.exists(name) else None
+
+
+def parsed(data: bytes, where: str) -> pa.Table:
+    """Parse the Parquet form."""
+    try:
+        return pq.read_table(io.BytesIO(data))
+    except pa.ArrowInvalid as problem:
+        raise Unusable(
+            f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
+            f"{CSV} will be read, or run `nostalgin index` again"
+        ) from problem
+
+
+def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[dict[str, Any]]]:
+    """Parse the form that people mend; a spreadsheet may have put a mark in front."""
+    try:
+        reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig")), strict=True)
+        rows = [dict(row) for row in reader]
+    except (UnicodeDecodeError, csv.Error) as problem:
+        raise Unusable(
+            f"{where} can't be read ({problem}): save it as UTF-8"
+        ) from problem
+    return list(reader.fieldnames or []), rows
+
+
+def checked(
+    cells: list[dict[str, Any]], names: list[str], data: bytes, name: str
+) -> Manifest:
+    """Check every row by itself, so that one bad row spoils no other."""
+    missing = [one for one in REQUIRED if one not in names]
+    if missing:
+        raise Unusable(
+            f"{name} lacks the columns {', '.join(missing)}: it has "
+            f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
+        )
+    unknown = [one for one in names if one not in SCHEMA.names]
+    warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
+    results = [usable(number, row) for number, row in enumerate(cells, FIRST_ROW)]
+    return Manifest(
+        tuple(one for one in results if isinstance(one, Row)),
+        tuple(one for one in results if isinstance(one, Rejection)),
+        tuple(warnings),
+        hashlib.sha256(data).hexdigest(),
+    )
+
+
+def usable(number: int, cells: dict[str, Any]) -> Row | Rejection:
+    """Check one row, and name the row and the remedy if it can't be used."""
+    name = f"{CSV} row {number}"
+    if None in cells:
+        return Rejection(
+            name, "manifest", "too many cells", f"{cells[None]}: quote commas"
+        )
+    photo = text(cells, "photo")
+    if not inside(photo):
+        detail = f"{photo!r} leads out of the photo folder: write a path inside it"
+        return Rejection(name, "manifest", "path outside the photo folder", detail)
+    try:
+        front = front_from(cells)
+    except ValueError as problem:
+        return Rejection(name, "manifest", "nonsense cell", f"{problem}: mend the cell")
+    if front is None and not photo:
+        return Rejection(name, "manifest", "empty row", "name a photo or a front")
+    return Row(number, text(cells, "root"), photo, front, text(cells, "credit"), cells)
+
+
+def inside(photo: str) -> bool:
+    """Tell whether a path stays within the folder it is relative to."""
+    path = PurePosixPath(photo.replace("\\", "/"))
+    drive = len(photo) > 1 and photo[1] == ":"
+    return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)
+
+
+def text(cells: dict[str, Any], name: str) -> str:
+    """Read a cell of words; a missing one is empty."""
+    return str(cells.get(name) or "").strip()
+
+
+def front_from(cells: dict[str, Any]) -> Front | None:
+    """Read the front of a row.
+
+    Raises:
+        ValueError: if a cell holds no number where one is needed.
+    """
+    if not text(cells, "front_id"):
+        return None
+    width_m = number(cells, "width_m", None)
+    return Front(
+        front_id=text(cells, "front_id"),
+        block=needed(cells, "block"),
+        lot=needed(cells, "lot"),
+        ring=int(number(cells, "ring", 0)),
+        side=int(number(cells, "side", 0)),
+        rank=int(number(cells, "rank", 0)),
+        street=text(cells, "street"),
+        address=text(cells, "address"),
+        width_m=ASSUMED_WIDTH_M if width_m is None else width_m,
+        depth_m=number(cells, "depth_m", None),
+        width_assumed=width_m is None or flag(cells, "width_assumed"),
+    )
+
+
+def needed(cells: dict[str, Any], name: str) -> str:
+    """Read a cell that may not be empty."""
+    if not text(cells, name):
+        raise ValueError(f"{name} is empty")
+    return text(cells, name)
+
+
+def number(cells: dict[str, Any], name: str, otherwise: Any) -> Any:
+    """Read a number that is not negative; an empty cell counts as `otherwise`."""
+    written = str(cells.get(name) if cells.get(name) is not None else "").strip()
+    if not written:
+        return otherwise
+    try:
+        value = float(written)
+    except ValueError as problem:
+        raise ValueError(f"{name} is {written!r}, no number") from problem
+    if not 0 <= value < float("inf"):
+        raise ValueError(f"{name} is {written!r}, not a length or a count")
+    if name == "width_m" and value == 0:
+        raise ValueError("width_m is 0")
+    return value
+
+
+def flag(cells: dict[str, Any], name: str) -> bool:
+    """Read yes or no."""
+    written = str(cells.get(name) if cells.get(name) is not None else "").lower()
+    if written in YES:
+        return True
+    if written in NO:
+        return False
+    raise ValueError(f"{name} is {written!r}, neither true nor false")

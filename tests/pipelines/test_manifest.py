@@ -1,0 +1,160 @@
+import re
+from pathlib import Path
+
+import pytest
+
+from nostalgin_core.records import Front
+from pipelines import manifest
+from pipelines.manifest import Unusable
+from pipelines.store import Store
+from tests.data import ROOT
+
+FRONT = Front("993-1-0", "993", "1", 0, 0, 0, "7 Avenue", "561-565", 18.06, 18.3, False)  # noqa: FBT003
+CORNER = Front("993-1-1", "993", "1", 0, 1, 1, "West 40 Street", "", 7.62, None, True)  # noqa: FBT003
+
+
+def rows() -> list[dict]:
+    return [
+        manifest.row_of("a.jpg", FRONT, root="/photos", credit="An archive"),
+        manifest.row_of("a.jpg", CORNER, root="/photos", credit="An archive"),
+        manifest.row_of("", CORNER, root="/photos", credit=""),
+        manifest.row_of("stray.jpg", None, root="/photos", credit=""),
+    ]
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    store = Store(str(tmp_path))
+    manifest.write(store, rows())
+    return store
+
+
+def edit(store: Store, change: tuple[str, str]) -> None:
+    path = Path(store.root) / manifest.CSV
+    text = path.read_text()
+    assert change[0] in text
+    path.write_text(text.replace(*change))
+
+
+def test_what_was_written_is_read_back(store: Store) -> None:
+    found = manifest.read(store)
+    assert [(row.photo, row.front) for row in found.rows] == [
+        ("a.jpg", FRONT),
+        ("", CORNER),
+        ("a.jpg", CORNER),
+        ("stray.jpg", None),
+    ]
+    assert (found.rejections, found.warnings) == ((), ())
+
+
+@pytest.mark.parametrize("lost", [manifest.CSV, manifest.PARQUET])
+def test_either_form_says_the_same(store: Store, lost: str) -> None:
+    both = manifest.read(store)
+    (Path(store.root) / lost).unlink()
+    assert manifest.read(store).rows == both.rows
+
+
+def test_a_mended_csv_wins(store: Store) -> None:
+    edit(store, ("561-565", "561"))
+    assert manifest.read(store).rows[0].front.address == "561"  # type: ignore[union-attr]
+
+
+def test_an_untouched_csv_is_not_read(store: Store) -> None:
+    before = manifest.read(store)
+    path = Path(store.root) / manifest.CSV
+    path.write_bytes(path.read_bytes())
+    assert manifest.read(store).sha256 == before.sha256
+
+
+def test_unknown_columns_are_kept_with_a_warning(store: Store) -> None:
+    manifest.write(store, [row | {"remark": "torn"} for row in rows()])
+    found = manifest.read(store)
+    assert len(found.warnings) == 1
+    assert "remark" in found.warnings[0]
+    assert {row.cells["remark"] for row in found.rows} == {"torn"}
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["../a.jpg", "b/../../a.jpg", "/etc/a.jpg", "C:\\a.jpg", "..\\a.jpg", "a\0.jpg"],
+)
+def test_a_path_that_leads_outside_is_inside_nothing(path: str) -> None:
+    assert not manifest.inside(path)
+
+
+@pytest.mark.parametrize("path", ["a.jpg", "b/a.jpg", "b/..a.jpg", "a..b.jpg", ""])
+def test_a_path_below_is_inside(path: str) -> None:
+    assert manifest.inside(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason", "words"),
+    [
+        (("a.jpg,An archive,993-1-0", "../a.jpg,,993-1-0"), "path outside", "../a.jpg"),
+        (("18.06", "wide"), "nonsense cell", "width_m is 'wide'"),
+        (("18.06", "-3"), "nonsense cell", "width_m is '-3'"),
+        (("18.06", "nan"), "nonsense cell", "width_m is 'nan'"),
+        (("18.06", "0"), "nonsense cell", "width_m is 0"),
+        (("False", "perhaps"), "nonsense cell", "perhaps"),
+        (("993-1-0,993", "993-1-0,"), "nonsense cell", "block is empty"),
+        (("561-565", "561,565"), "", ""),
+    ],
+)
+def test_a_bad_row_is_named_and_spoils_no_other(
+    store: Store, change: tuple[str, str], reason: str, words: str
+) -> None:
+    edit(store, change)
+    found = manifest.read(store)
+    (bad,) = found.rejections
+    assert bad.key == "manifest.csv row 2"
+    assert reason in bad.reason
+    assert words in bad.detail
+    assert len(found.rows) == 3
+
+
+def test_a_row_of_nothing_is_refused(store: Store) -> None:
+    edit(store, ("stray.jpg", ""))
+    assert [one.reason for one in manifest.read(store).rejections] == ["empty row"]
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\xff\xfe\x00nonsense", b"a,b\n1,2\n", b"photo\n\0\n", b'photo,"\n']
+)
+def test_nonsense_is_refused_by_name(store: Store, data: bytes) -> None:
+    (Path(store.root) / manifest.CSV).write_bytes(data)
+    with pytest.raises(Unusable, match="manifest.csv"):
+        manifest.read(store)
+
+
+def test_a_broken_parquet_file_is_refused_by_name(store: Store) -> None:
+    (Path(store.root) / manifest.PARQUET).write_bytes(b"PAR1nonsense")
+    with pytest.raises(Unusable, match="manifest.parquet"):
+        manifest.read(store)
+
+
+def test_no_manifest_is_refused_with_the_remedy(tmp_path: Path) -> None:
+    with pytest.raises(Unusable, match="nostalgin index"):
+        manifest.read(Store(str(tmp_path)))
+
+
+def test_a_width_left_empty_is_assumed(store: Store) -> None:
+    edit(store, ("18.06", ""))
+    front = manifest.read(store).rows[0].front
+    assert front is not None
+    assert front.width_assumed
+    assert front.width_m == manifest.ASSUMED_WIDTH_M
+
+
+def test_blocks_stand_in_the_order_of_their_numbers() -> None:
+    assert sorted(["10", "9", "b", None], key=manifest.natural) == [
+        "9",
+        "10",
+        None,
+        "b",
+    ]
+
+
+def test_every_column_is_documented() -> None:
+    page = (ROOT / "docs" / "manifest.md").read_text()
+    documented = set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE))
+    assert documented == set(manifest.SCHEMA.names)
