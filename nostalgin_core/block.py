@@ -1,0 +1,233 @@
+"""The buildings of one tax block, its rings laid out on one ground plane.
+
+A ring is placed on its own (`chain`); the rings of a block face each other over the
+street that cuts it, and blocks face each other over the street between them. So one
+rule lays out both: two sides on the same street are turned to face, its width apart.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+
+import numpy as np
+from jaxtyping import Float
+
+from nostalgin_core.arrays import Points
+from nostalgin_core.chain import Footprint, Ring, chain, first_number
+from nostalgin_core.cuboid import ASSUMED_M, Shown, cuboid
+from nostalgin_core.records import Assignment, Block, Building, Front
+
+STREET_M = 18.3  # 60 feet from front to front: a side street of 1811
+AVENUE_M = 30.5  # 100 feet
+FALLBACK_GAP_M = 24.0
+
+Aspects = Mapping[tuple[str, int], tuple[float, float]]  # aspect and its spread
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One side of an outline, as a placed line along a street."""
+
+    street: str
+    start_m: Float[np.ndarray, " 2"]
+    end_m: Float[np.ndarray, " 2"]
+
+
+def block(
+    name: str,
+    fronts: Sequence[Front],
+    assignments: Sequence[Assignment],
+    aspects: Aspects,
+    *,
+    copied: bool = False,
+) -> Block:
+    """Build the cuboids of one block, ring by ring, in the order of its fronts.
+
+    Raises:
+        ValueError: if there are no fronts.
+    """
+    shown = elevations(assignments, aspects)
+    fronts = with_seen_widths(fronts, shown)
+    numbers = sorted({front.ring for front in fronts})
+    rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
+    cutting = cutting_streets(rings)
+    placed = laid_out([(chain(ring, free_sides=_free(ring, cutting)), ring) for ring in rings])
+    footprints = [footprint for ring in placed for footprint in ring.footprints]
+    return Block(
+        block=name,
+        buildings=tuple(raised(footprints, shown, copied=copied)),
+        outline_m=tuple(ring.outline_m for ring in placed),
+    )
+
+
+def elevations(
+    assignments: Sequence[Assignment], aspects: Aspects
+) -> dict[str, list[Shown]]:
+    """List what shows each front."""
+    shown: dict[str, list[Shown]] = {}
+    for one in assignments:
+        texture = (one.photo, one.facade)
+        shown.setdefault(one.front_id, []).append(
+            Shown(texture, *aspects[texture], score=one.score)
+        )
+    return shown
+
+
+def with_seen_widths(
+    fronts: Sequence[Front], shown: Mapping[str, Sequence[Shown]]
+) -> list[Front]:
+    """Give assumed widths of corner buildings their true proportion.
+
+    Both fronts of a building are equally high, so that w2 = w1 a2 / a1: two facades of
+    one building specify its cuboid.
+    """
+    best = {front_id: max(some, key=lambda one: one.score) for front_id, some in shown.items()}
+    known = {
+        (front.block, front.lot): front
+        for front in fronts
+        if not front.width_assumed and front.front_id in best
+    }
+    widened = []
+    for front in fronts:
+        other = known.get((front.block, front.lot))
+        if front.width_assumed and other is not None and front.front_id in best:
+            ratio = best[front.front_id].aspect / best[other.front_id].aspect
+            front = replace(front, width_m=other.width_m * ratio)
+        widened.append(front)
+    return widened
+
+
+def raised(
+    footprints: Sequence[Footprint],
+    shown: Mapping[str, Sequence[Shown]],
+    *,
+    copied: bool = False,
+) -> list[Building]:
+    """Raise all buildings; those without a height get the median of their neighbours."""
+    first = [cuboid(footprint, shown, copied=copied) for footprint in footprints]
+    seen = [(i, building.height_m) for i, building in enumerate(first) if not building.assumed]
+    buildings = []
+    for index, building in enumerate(first):
+        if building.assumed and seen:
+            count = len(first)
+            near = sorted(
+                seen, key=lambda one: min((one[0] - index) % count, (index - one[0]) % count)
+            )[:4]
+            building = replace(building, height_m=float(median(m for _, m in near)))
+        buildings.append(building)
+    return buildings
+
+
+def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
+    """Find the streets on which a block's rings face each other.
+
+    Two rings of one block share the streets that go on past both; the one that cuts
+    it is the street whose house numbers are odd on one ring and even on the other.
+    """
+    cutting = set()
+    for index, a in enumerate(rings):
+        for b in rings[index + 1 :]:
+            for street in {front.street for front in a} & {front.street for front in b}:
+                if not parities(a, street) & parities(b, street):
+                    cutting.add(street)
+    return frozenset(cutting)
+
+
+def parities(fronts: Sequence[Front], street: str) -> set[int]:
+    """Tell whether the house numbers on a street are odd (1) or even (0)."""
+    numbers = [first_number(front.address) for front in fronts if front.street == street]
+    return {number % 2 for number in numbers if number is not None}
+
+
+def _free(fronts: Sequence[Front], cutting: frozenset[str]) -> frozenset[int]:
+    return frozenset(front.side for front in fronts if front.street in cutting)
+
+
+def laid_out(rings: Sequence[tuple[Ring, Sequence[Front]]]) -> list[Ring]:
+    """Turn and move rings so that each faces one that lies already, the first as is."""
+    placed: list[Ring] = []
+    for ring, fronts in rings:
+        opposite = _facing(ring, fronts, placed, rings)
+        placed.append(opposite or _beside(ring, placed))
+    return placed
+
+
+def _facing(
+    ring: Ring,
+    fronts: Sequence[Front],
+    placed: Sequence[Ring],
+    rings: Sequence[tuple[Ring, Sequence[Front]]],
+) -> Ring | None:
+    for other, (_, theirs) in zip(placed, rings, strict=False):
+        cutting = cutting_streets([fronts, theirs])
+        mine = [side for side in sides(ring, fronts) if side.street in cutting]
+        yours = [side for side in sides(other, theirs) if side.street in cutting]
+        for a in mine:
+            for b in yours:
+                if a.street == b.street:
+                    return face(ring, a, b, gap_m=street_width(a.street))
+    return None
+
+
+def street_width(street: str) -> float:
+    """Tell a street's width from front to front, by its name alone."""
+    words = street.casefold().split()
+    wide = {"avenue", "ave", "broadway", "boulevard", "bowery", "square"}
+    return AVENUE_M if wide & {word.strip(".,") for word in words} else STREET_M
+
+
+def sides(ring: Ring, fronts: Sequence[Front]) -> list[Side]:
+    """Name the sides of a ring's outline by the streets of its fronts."""
+    ends = np.roll(ring.outline_m, -1, axis=0) if ring.closed else ring.outline_m[1:]
+    streets = {front.side: front.street for front in fronts}
+    return [
+        Side(streets[index], start, end)
+        for index, (start, end) in enumerate(zip(ring.outline_m, ends, strict=False))
+        if index in streets
+    ]
+
+
+def face(ring: Ring, side: Side, opposite: Side, *, gap_m: float) -> Ring:
+    """Turn and move a ring so that its side faces another over a gap, middles aligned."""
+    mine, yours = side.end_m - side.start_m, opposite.end_m - opposite.start_m
+    turn = np.arctan2(*yours[::-1]) + np.pi - np.arctan2(*mine[::-1])
+    outward = np.array([yours[1], -yours[0]]) / np.hypot(*yours)
+    target = (opposite.start_m + opposite.end_m) / 2 + gap_m * outward
+    return moved(ring, float(turn), target, pivot_m=(side.start_m + side.end_m) / 2)
+
+
+def moved(
+    ring: Ring,
+    turn_rad: float,
+    target_m: Float[np.ndarray, " 2"],
+    *,
+    pivot_m: Float[np.ndarray, " 2"],
+) -> Ring:
+    """Turn a ring about a pivot, then bring the pivot to a target."""
+    cos, sin = np.cos(turn_rad), np.sin(turn_rad)
+
+    def carry(points: Points) -> Points:
+        return (points - pivot_m) @ np.array([[cos, sin], [-sin, cos]]) + target_m
+
+    return replace(
+        ring,
+        outline_m=carry(ring.outline_m),
+        headings_rad=tuple(heading + turn_rad for heading in ring.headings_rad),
+        footprints=tuple(
+            replace(footprint, corners_m=carry(footprint.corners_m))
+            for footprint in ring.footprints
+        ),
+    )
+
+
+def _beside(ring: Ring, placed: Sequence[Ring]) -> Ring:
+    """Put a ring that faces no other to the east of all."""
+    if not placed:
+        return ring
+    right = max(_east(one).max() for one in placed)
+    shift = np.array([right + FALLBACK_GAP_M - _east(ring).min(), 0.0])
+    return moved(ring, 0.0, shift, pivot_m=np.zeros(2))
+
+
+def _east(ring: Ring) -> Float[np.ndarray, " n"]:
+    return np.concatenate([footprint.corners_m[:, 0] for footprint in ring.footprints])

@@ -1,0 +1,339 @@
+"""Fronts become footprints: the paper's algorithm 2, mended, round any ring.
+
+The paper (appendix, algorithm 2) walks from a front to its neighbour with a point
+(x, y) and a cardinal direction, and puts a cube at each step. As printed
+
+1. the pointer never moves, so the loop never ends: here each side is walked front by
+   front, and each ring side by side;
+2. it turns *before* it places a corner building, which so lands one side too far along
+   the new direction: here the building is placed first, then the walk turns at its far
+   edge;
+3. a corner building is met on both its sides and built twice: here it is built once,
+   from both its widths (one is its width, the other its depth);
+4. it turns only at a building with two known fronts, so that a ring without one never
+   closes: here every change of side is a corner, and where no lot has a front on both
+   streets, one of the two that meet there is given the corner;
+5. it turns by 90 degrees and does not check that the walk comes home: here the ring is
+   closed first (`outline`), opposite sides reconciled, with any number of sides.
+
+Party walls run along the neighbouring side at either end of a side, and turn gradually
+between; in a rectangular ring they are all square to the street, and every footprint is
+a rectangle. A ring of one side is a straight row, a ring of two sides an open corner.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq
+
+from nostalgin_core import outline
+from nostalgin_core.apart import apart
+from nostalgin_core.arrays import Corners, Points
+from nostalgin_core.records import Front
+
+DEPTH_M = 18.0  # a lot is commonly 60 to 100 feet deep
+KNOWN_SD, ASSUMED_SD = 0.03, 0.4  # relative, of a width
+DEPTH_SD = 0.25  # of a width that is another front's depth
+GROWTH = 1.35  # an assumed width grows by no more: beyond, a gap is left open
+CLOSED_GAP = 0.03  # of a side's length
+
+Vector = Float[np.ndarray, " 2"]
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A stretch of one side that belongs to one building."""
+
+    building_id: str
+    front_id: str | None  # None: the side wall of a corner building
+    width_m: float
+    width_sd: float  # relative
+    depth_m: float
+    number: int | None  # house number, to see where lots are missing
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Footprint:
+    """Where one building stands."""
+
+    building_id: str
+    corners_m: Corners  # anticlockwise from the left end of its first front
+    front_ids: tuple[str | None, ...]  # one per edge
+    turns: int = 0  # corners of the ring that it stands round
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ring:
+    """A ring of fronts on the ground, its first side heading east from the origin."""
+
+    footprints: tuple[Footprint, ...]  # in order round the ring
+    outline_m: Points  # the corners, anticlockwise
+    headings_rad: tuple[float, ...]  # of each side, from east, anticlockwise
+    closed: bool
+
+
+def chain(fronts: Sequence[Front], *, free_sides: frozenset[int] = frozenset()) -> Ring:
+    """Place the fronts of one ring.
+
+    Sides of four-sided rings meet at right angles, but for `free_sides` (a street that
+    cuts the grid, as Broadway), whose heading follows from the others. Rings of three
+    sides, or five and more, are free throughout.
+
+    Raises:
+        ValueError: if there are no fronts.
+    """
+    if not fronts:
+        raise ValueError("a ring needs at least one front")
+    sides = with_corners(pieces(fronts))
+    closed = len(sides) > 2
+    if closed:
+        lengths_m, headings = outline.close(measured(sides, free_sides))
+    else:
+        lengths_m = np.array([sum(p.width_m for p in side) for side in sides])
+        headings = outline.nominal_headings(4)[: len(sides)]
+    starts_m = outline.corners(lengths_m, headings)
+    spans = [fitted(side, length) for side, length in zip(sides, lengths_m, strict=True)]
+    footprints = _walked(sides, spans, starts_m, headings, closed=closed)
+    end_m = starts_m[-1] + lengths_m[-1] * _ahead(headings[-1])
+    return Ring(
+        footprints=tuple(_apart(footprints)),
+        outline_m=starts_m if closed else np.vstack([starts_m, end_m]),
+        headings_rad=tuple(float(heading) for heading in headings),
+        closed=closed,
+    )
+
+
+def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
+    """Sort fronts into sides; a side without fronts stays empty."""
+    present = {front.side for front in fronts}
+    count = 4 if present == {0, 2} else max(present) + 1
+    sides: list[list[Piece]] = [[] for _ in range(count)]
+    for front in sorted(fronts, key=lambda front: front.rank):
+        sides[front.side].append(
+            Piece(
+                building_id=f"{front.block}-{front.lot}",
+                front_id=front.front_id,
+                width_m=front.width_m,
+                width_sd=ASSUMED_SD if front.width_assumed else KNOWN_SD,
+                depth_m=front.depth_m or DEPTH_M,
+                number=first_number(front.address),
+            )
+        )
+    return sides
+
+
+def first_number(address: str) -> int | None:
+    """Read the house number an address starts with."""
+    digits = address.strip().split("-")[0].split(" ")[0]
+    return int(digits) if digits.isdigit() else None
+
+
+def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
+    """Give every corner to one building, which then has a piece on both sides.
+
+    Where no building has fronts on both, the last of the side that ends or the first
+    of the side that starts gets it: the one on the side with fewer fronts, for on a
+    short side (the avenue) lots reach round the corner. Its depth is its other width.
+    A side without fronts belongs to its neighbour that comes first, to its far corner.
+    """
+    whole = [list(side) for side in sides]
+    count = len(sides)
+    for here in range(count if count > 2 else count - 1):
+        there = (here + 1) % count
+        last = whole[here][-1] if whole[here] else None
+        first = whole[there][0] if whole[there] else None
+        if last and first and last.building_id == first.building_id:
+            continue
+        if last and first and len(sides[here]) <= len(sides[there]):
+            whole[there].insert(0, _round_the_corner(last))
+        elif first:
+            whole[here].append(_round_the_corner(first))
+        elif last and sides[here]:
+            whole[there].insert(0, _round_the_corner(last))
+    return whole
+
+
+def _round_the_corner(piece: Piece) -> Piece:
+    return replace(
+        piece,
+        front_id=None,
+        width_m=piece.depth_m,
+        width_sd=DEPTH_SD,
+        depth_m=piece.width_m,
+        number=None,
+    )
+
+
+def measured(
+    sides: Sequence[Sequence[Piece]], free_sides: frozenset[int]
+) -> list[outline.Measured]:
+    """Sum each side's widths, and their variances."""
+    totals = [sum(piece.width_m for piece in side) for side in sides]
+    mean_m = sum(totals) / sum(total > 0 for total in totals)
+    free = frozenset(range(len(sides))) if len(sides) != 4 else free_sides
+    return [
+        outline.Measured(
+            length_m=total or mean_m,
+            squeeze_sd=_relative_sd(side) if side else outline.UNKNOWN_SD,
+            heading_rad=float(heading),
+            heading_sd_rad=outline.FREE_SD_RAD if index in free else 0.0,
+        )
+        for index, (side, total, heading) in enumerate(
+            zip(sides, totals, outline.nominal_headings(len(sides)), strict=True)
+        )
+    ]
+
+
+def _relative_sd(side: Sequence[Piece]) -> float:
+    sds_m = [piece.width_m * piece.width_sd for piece in side]
+    return float(np.hypot.reduce(sds_m)) / sum(piece.width_m for piece in side)
+
+
+def fitted(side: Sequence[Piece], length_m: float) -> list[tuple[float, float]]:
+    """Fit a side's pieces to its length; return each one's start and end along it.
+
+    A piece changes by a factor exp(s^2 k) with its relative spread s and one k for the
+    side, so that what was measured well hardly moves. Where that would stretch an
+    assumed width beyond `GROWTH`, the rest is left open where the house numbers jump
+    most; an opening under `CLOSED_GAP` of the side is closed by scaling.
+    """
+    if not side:
+        return []
+    width_m = np.array([piece.width_m for piece in side])
+    variance = np.array([piece.width_sd**2 for piece in side])
+
+    def surplus(k: float) -> float:
+        return float((width_m * np.exp(variance * k)).sum()) - length_m
+
+    most = float(np.log(GROWTH)) / ASSUMED_SD**2
+    least = float(np.log(length_m / 2 / width_m.sum()) / variance.min())
+    k = most if surplus(most) <= 0 else brentq(surplus, min(least, -1.0), most)
+    width_m = width_m * np.exp(variance * k)
+    open_m = length_m - float(width_m.sum())
+    if len(side) == 1 or open_m < CLOSED_GAP * length_m:
+        width_m, open_m = width_m * length_m / width_m.sum(), 0.0
+    starts_m = np.concatenate([[0.0], np.cumsum(width_m)[:-1]])
+    starts_m[_widest_jump(side) + 1 :] += open_m
+    return [(float(a), float(a + w)) for a, w in zip(starts_m, width_m, strict=True)]
+
+
+def _widest_jump(side: Sequence[Piece]) -> int:
+    """Tell after which piece lots are most likely missing."""
+    jumps = [
+        abs(b.number - a.number) if a.number and b.number else 0
+        for a, b in zip(side[:-1], side[1:], strict=True)
+    ]
+    return int(np.argmax(jumps)) if jumps else 0
+
+
+def _ahead(heading: float) -> Vector:
+    return np.array([np.cos(heading), np.sin(heading)])
+
+
+def _walked(
+    sides: Sequence[Sequence[Piece]],
+    spans: Sequence[Sequence[tuple[float, float]]],
+    starts_m: Points,
+    headings: Float[np.ndarray, " n"],
+    *,
+    closed: bool,
+) -> list[Footprint]:
+    """Walk round the ring once and place each building where its first front starts.
+
+    A piece that continues a building from round the corner is left out: that building
+    was placed before, or will be when the walk comes to its first side.
+    """
+    count = len(sides)
+    placed: list[Footprint] = []
+    for here, side in enumerate(sides):
+        for index, piece in enumerate(side):
+            before = sides[here - 1] if closed or here else []
+            if index == 0 and before and before[-1].building_id == piece.building_id:
+                continue
+            run = _run(sides, here, index, closed=closed)
+            points = [starts_m[here] + spans[here][index][0] * _ahead(headings[here])]
+            points += [starts_m[side] for side, _ in run[1:]]
+            end, last = run[-1]
+            points.append(starts_m[end] + spans[end][last][1] * _ahead(headings[end]))
+            if len(run) == 1:
+                walls = _party_walls(headings, here, spans[here], closed=closed)
+                back = piece.depth_m * walls[index : index + 2]
+                points += [points[1] + back[1], points[0] + back[0]]
+            elif len(run) == 2:
+                points.append(points[0] + points[2] - points[1])
+            fronts = tuple(sides[s][i].front_id for s, i in run)
+            placed.append(_footprint(piece.building_id, points, fronts))
+    if not placed:  # one building is the whole block
+        fronts = tuple(side[0].front_id for side in sides)
+        points = [*starts_m, (starts_m[-1] + starts_m[0]) / 2]
+        placed.append(_footprint(sides[0][0].building_id, points, fronts))
+    return placed
+
+
+def _run(
+    sides: Sequence[Sequence[Piece]], here: int, index: int, *, closed: bool
+) -> list[tuple[int, int]]:
+    """Follow one building round corners; return its pieces as (side, index)."""
+    building = sides[here][index].building_id
+    run = [(here, index)]
+    while run[-1][1] == len(sides[run[-1][0]]) - 1:
+        there = run[-1][0] + 1
+        if there == len(sides) and not closed:
+            break
+        following = sides[there % len(sides)]
+        if not following or following[0].building_id != building:
+            break
+        run.append((there % len(sides), 0))
+    return run
+
+
+def _footprint(
+    building_id: str, points: Sequence[Vector], fronts: tuple[str | None, ...]
+) -> Footprint:
+    """Keep four corners and a front, or None, for each edge."""
+    four = (*fronts, None, None, None)[:4]
+    return Footprint(building_id, np.array(points[:4]), four, min(len(fronts) - 1, 3))
+
+
+def _party_walls(
+    headings: Float[np.ndarray, " n"],
+    here: int,
+    spans: Sequence[tuple[float, float]],
+    *,
+    closed: bool,
+) -> Points:
+    """Find the way back from the street at each piece's start, and the last one's end.
+
+    Each is one metre deep, measured square to the street.
+    """
+    ahead = _ahead(headings[here])
+    inward = np.array([-ahead[1], ahead[0]])
+    count = len(headings)
+    at_start = at_end = inward
+    if closed or here > 0:
+        at_start = _one_deep(-_ahead(headings[here - 1]), inward)
+    if closed or here + 1 < count:
+        at_end = _one_deep(_ahead(headings[(here + 1) % count]), inward)
+    ends = np.array([spans[0][0], *(end for _, end in spans)])
+    first, last = (ends[1], ends[-2]) if len(spans) > 2 else (ends[0], ends[-1])
+    share = np.clip((ends - first) / max(last - first, 1e-9), 0.0, 1.0)[:, None]
+    return at_start * (1 - share) + at_end * share
+
+
+def _one_deep(back: Vector, inward: Vector) -> Vector:
+    depth = float(back @ inward)
+    # a wall leaning by over 60 degrees would leave a sliver: it goes square instead
+    return back / depth if depth > 0.5 else inward
+
+
+def _apart(footprints: Sequence[Footprint]) -> list[Footprint]:
+    corners = apart(
+        [footprint.corners_m for footprint in footprints],
+        [footprint.turns for footprint in footprints],
+    )
+    return [
+        replace(footprint, corners_m=four)
+        for footprint, four in zip(footprints, corners, strict=True)
+    ]

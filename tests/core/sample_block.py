@@ -1,0 +1,164 @@
+"""A painted block that needs no network: fronts, elevations, and all that follows."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from nostalgin_core import atlas, block, evidence, facts, gltf, mesh, picture, tileset
+from nostalgin_core.records import Assignment, Block, Elevation, Front
+
+# lot, side, street, address, width, depth, storeys (0: no photograph)
+LOTS = (
+    ("1", 0, "West 1 Street", "115-119", 18.0, 15.0, 4),
+    ("4", 0, "West 1 Street", "113", 7.5, 18.0, 5),
+    ("5", 0, "West 1 Street", "109-111", 12.0, 20.0, 0),
+    ("7", 0, "West 1 Street", "105-107", 15.0, 18.0, 6),
+    ("9", 0, "West 1 Street", "101-103", 14.0, 16.0, 9),
+    ("9", 1, "First Avenue", "1-3", 16.0, 14.0, 9),
+    ("10", 1, "First Avenue", "5", 8.0, 18.0, 3),
+    ("12", 1, "First Avenue", "7-9", 20.0, 18.0, 5),
+    ("14", 2, "West 2 Street", "102-106", 22.0, 18.0, 7),
+    ("16", 2, "West 2 Street", "108", 7.0, 18.0, 4),
+    ("17", 2, "West 2 Street", "110-112", 16.0, 17.0, 12),
+    ("20", 2, "West 2 Street", "114", 9.0, 18.0, 4),
+    ("22", 3, "Second Avenue", "8-10", 17.0, 14.0, 5),
+    ("24", 3, "Second Avenue", "4-6", 13.0, 18.0, 3),
+    ("1", 3, "Second Avenue", "2", 15.0, 18.0, 4),
+)
+STOREY_M = 3.6
+TEXELS = 24  # a metre
+
+
+def fronts(name: str = "1") -> tuple[Front, ...]:
+    return tuple(
+        Front(
+            front_id=f"{name}-{lot}-{side}",
+            block=name,
+            lot=lot,
+            ring=0,
+            side=side,
+            rank=rank,
+            street=street,
+            address=address,
+            width_m=width,
+            depth_m=depth,
+            width_assumed=False,
+        )
+        for rank, (lot, side, street, address, width, depth, _) in enumerate(LOTS)
+    )
+
+
+def painted(width_m: float, storeys: int, *, facade: int, seed: int) -> Elevation:
+    """Paint windows on a wall; a car has hidden its foot, a stepped roof its corners."""
+    rng = np.random.default_rng(seed)
+    h, w = round(storeys * STOREY_M * TEXELS), round(width_m * TEXELS)
+    wall = rng.normal(rng.integers(90, 190), 6, (h, w))
+    bays = max(2, round(width_m / 2.6))
+    for storey in range(storeys):
+        for bay in range(bays):
+            x = round((bay + 0.5) * w / bays)
+            y = round((storey + 0.55) * h / storeys)
+            wall[y - 22 : y + 22, x - 13 : x + 13] = 35
+            wall[y - 1 : y + 1, x - 13 : x + 13] = 160
+            wall[y + 22 : y + 26, x - 16 : x + 16] += 35
+    wall[: TEXELS // 3] += 25
+    codes = np.full((h, w), evidence.PHOTOGRAPHED, np.uint8)
+    step = TEXELS if seed % 3 == 0 else 0
+    codes[:step, : w // 4] = codes[:step, -w // 4 :] = evidence.NOTHING
+    codes[-30:, w // 3 : w // 3 + 70] = evidence.INPAINTED
+    codes[-32:-30, w // 3 : w // 3 + 70] = evidence.SOFT_EDGE
+    if seed % 4 == 1:
+        codes[:, -w // 6 :] = evidence.BEYOND_FRAME
+    return Elevation(
+        facade=facade,
+        image=np.clip(wall, 0, 255).astype(np.uint8),
+        alpha=(codes == evidence.PHOTOGRAPHED).astype(np.float32),
+        evidence=codes,
+        quad=np.array([[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]]),
+        photo_from_elevation=np.eye(3),
+        vanishing_points=np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+        focal_px=None,
+        aspect=w / h,
+        vanishing_sd_deg=(0.1, 0.1),
+        focal_sd_px=None,
+        aspect_sd=0.01 * w / h,
+        method="painted",
+    )
+
+
+def elevations(name: str = "1") -> dict[tuple[str, int], Elevation]:
+    drawn = {}
+    for number, (lot, side, _, _, width, _, storeys) in enumerate(LOTS):
+        if storeys:
+            key = (f"photo-{name}-{lot}", 1 if (lot, side) in {("9", 1), ("1", 0)} else 0)
+            seed = number + 100 * sum(map(ord, name))
+            drawn[key] = painted(width, storeys, facade=key[1], seed=seed)
+    return drawn
+
+
+def assignments(name: str = "1") -> tuple[Assignment, ...]:
+    return tuple(
+        Assignment(
+            front_id=f"{name}-{lot}-{side}",
+            photo=f"photo-{name}-{lot}",
+            facade=1 if (lot, side) in {("9", 1), ("1", 0)} else 0,
+            score=0.9,
+        )
+        for lot, side, *_, storeys in LOTS
+        if storeys
+    )
+
+
+def built(name: str = "1") -> tuple[Block, bytes]:
+    """Build the block and write it."""
+    drawn = elevations(name)
+    aspects = {key: (one.aspect, one.aspect_sd) for key, one in drawn.items()}
+    made = block.block(name, fronts(name), assignments(name), aspects)
+    sheet = atlas.build(
+        {key: drawn[key[:2]] for key in atlas.wanted(made)}, longest_px=512
+    )
+    meshes = [
+        (one.building_id, mesh.building(one, sheet, number=number))
+        for number, one in enumerate(made.buildings)
+    ]
+    known = facts.table(made, fronts(name), assignments(name))
+    data = gltf.glb(
+        name,
+        meshes,
+        colours=picture.colours(sheet),
+        evidence=picture.evidence_key(sheet),
+        table=known,
+        copyright="painted",
+        extras={"evidence": picture.legend(), "block": name},
+    )
+    return made, data
+
+
+def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
+    """Write blocks, tileset and buildings for trying a viewer."""
+    (folder / "blocks").mkdir(parents=True, exist_ok=True)
+    tiles, rows = [], []
+    for index, name in enumerate(names):
+        made, data = built(name)
+        (folder / "blocks" / f"{name}.glb").write_bytes(data)
+        low, high = facts.bounds(made)
+        origin = (0.0, index * 90.0)
+        tiles.append(tileset.Tile(f"blocks/{name}.glb", low, high, origin_m=origin))
+        known = facts.table(made, fronts(name), assignments(name))
+        for number in range(len(made.buildings)):
+            rows.append(
+                {
+                    key: value[number] if isinstance(value, list) else value[number].item()
+                    for key, value in known.items()
+                }
+            )
+    text = json.dumps(tileset.tileset(tiles), indent=1)
+    (folder / "tileset.json").write_text(text)
+    (folder / "buildings.json").write_text(json.dumps(rows, indent=1))
+
+
+if __name__ == "__main__":
+    import sys
+
+    write_site(Path(sys.argv[1]))
