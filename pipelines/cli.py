@@ -8,10 +8,14 @@ answers at once.
 import sys
 import time
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 from rich.console import Console
+
+if TYPE_CHECKING:
+    from pipelines.build import Report
+    from pipelines.progress import Voice
 
 FAILED: Final = 1
 TOO_MANY_REJECTIONS: Final = 3
@@ -35,6 +39,11 @@ ModelsFolder = Annotated[
 @app.callback()
 def nostalgin() -> None:
     """Turn historical street photographs into a city to walk through."""
+
+
+JsonLines = Annotated[
+    bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
+]
 
 
 def fail(message: str) -> typer.Exit:
@@ -93,6 +102,94 @@ def explain_command(
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
         typer.echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
     typer.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
+
+
+BUILD_EXAMPLES = """
+Examples:
+
+  nostalgin build city                            [dim]# in this process[/]
+
+  nostalgin build city --direct_num_workers 2     [dim]# two processes[/]
+
+  nostalgin build city --shard 3/16               [dim]# every sixteenth block[/]
+
+  nostalgin build city --runner FlinkRunner --flink_master host:8081
+"""
+
+
+@app.command(
+    "build",
+    epilog=BUILD_EXAMPLES,
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+)
+def build_command(
+    context: typer.Context,
+    city: Annotated[str, typer.Argument(help="The city folder that `index` made.")],
+    *,
+    shard: Annotated[str, typer.Option(help="Part of the blocks, as 3/16.")] = "",
+    models: ModelsFolder = None,
+    max_rejected: Annotated[
+        float,
+        typer.Option(help="Share of photos that may give nothing; above it, exit 3."),
+    ] = 0.5,
+    json_lines: JsonLines = False,
+) -> None:
+    """Build the city: every photo through every stage, one model a block, the site.
+
+    What was done before is found and kept, so a run that was stopped goes on where it
+    was. All other options go to Beam.
+    """
+    from pipelines.models import one_thread
+
+    one_thread()
+    from pipelines.build import Lost, build
+    from pipelines.manifest import Unusable
+    from pipelines.models import Unlocked
+    from pipelines.options import options
+
+    voice = told(json_lines)
+    try:
+        chosen = options(city, models=str(models or ""), shard=shard, beam=context.args)
+    except ValueError as problem:
+        raise typer.BadParameter(str(problem)) from problem
+    try:
+        report = build(chosen, voice)
+    except (Unusable, Unlocked, Lost) as problem:
+        raise fail(str(problem)) from problem
+    summed(report, voice, max_rejected)
+
+
+def told(json_lines: bool) -> "Voice":  # noqa: FBT001 - as the option gives it
+    """Choose how to speak: to people on standard error, or JSON on standard output."""
+    from pipelines.progress import Voice
+
+    return Voice(errors, machine=json_lines)
+
+
+def summed(report: "Report", voice: "Voice", max_rejected: float) -> None:
+    """Tell what came of a build, and end with 3 if too much was rejected."""
+    for one in report.rejections:
+        facade = "" if one["facade"] is None else f" facade {one['facade']}"
+        words = (
+            f"{one['key']}{facade}: {one['stage']}: {one['reason']}: {one['detail']}"
+        )
+        voice.say("rejected", f"rejected {words}", **one)
+    voice.say(
+        "done",
+        f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
+        f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
+        f"{report.buildings} buildings, {report.assumed} of them assumed",
+        run=report.run,
+        photos=report.photos,
+        rejected_photos=report.rejected_photos,
+        facades=report.facades,
+        blocks=report.blocks,
+        buildings=report.buildings,
+        assumed=report.assumed,
+        reasons=dict(report.reasons()),
+    )
+    if report.rejected_share > max_rejected:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
 def main() -> None:

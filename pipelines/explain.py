@@ -15,7 +15,7 @@ from typing import Any, Final
 import cv2
 import numpy as np
 
-from nostalgin_core import lines, reconstruct
+from nostalgin_core import reconstruct, rectify
 from nostalgin_core.arrays import Gray, Lines
 from nostalgin_core.reconstruct import Networks, Reconstruction
 from nostalgin_core.records import Elevation, Facade, Instance, Photo, Rejection
@@ -33,9 +33,8 @@ class Unreadable(ValueError):  # noqa: N818 - it reads as what it is about
 def explain(data: bytes, out: Path, networks: Networks, *, started: float) -> dict:
     """Take a photo through every stage and write all there is to see into a folder.
 
-    Args:
-        started: the process's CPU seconds when work on this photo began, networks
-            loaded or not, so that the total is honest about loading.
+    The total counts from `started`, the process's CPU seconds when work on this photo
+    began, so that it is honest about loading.
 
     Returns: what `explain.json` says.
 
@@ -167,7 +166,7 @@ def whole(one: Instance, image: Gray) -> np.ndarray:
     """Lay an instance's hard mask into the photo."""
     mask = np.zeros(image.shape, bool)
     x0, y0, x1, y1 = one.box
-    mask[y0:y1, x0:x1] = one.probability > 0.5  # noqa: PLR2004 - more likely than not
+    mask[y0:y1, x0:x1] = one.probability > 0.5
     return mask
 
 
@@ -187,7 +186,7 @@ def pictures(made: Reconstruction, out: Path) -> None:
     """Write what is for looking at alone: evidence in colours, lines, the panel."""
     if made.photo is None:
         return
-    drawn = lines.detect(made.photo.image) if made.rectified else no_lines()
+    drawn = rectify.detect(made.photo)[1] if made.rectified else no_lines()
     for one in made.elevations:
         colours = draw.evidence_colours(one.evidence)
         saved(out, f"facade_{one.facade}_evidence_colours", colours)

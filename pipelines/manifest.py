@@ -9,7 +9,7 @@ that was mended by hand is noticed, and wins. Columns are documented in
 import csv
 import hashlib
 import io
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Any, Final
 
@@ -68,6 +68,7 @@ class Manifest:
     rejections: tuple[Rejection, ...]
     warnings: tuple[str, ...]
     sha256: str  # of what was read
+    mended: bool = False  # the CSV was edited since it was written
 
 
 def row_of(
@@ -124,16 +125,15 @@ def read(store: Store) -> Manifest:
         Unusable: if there is none, or if what there is makes no sense.
     """
     mended, parquet = optional(store, CSV), optional(store, PARQUET)
-    if mended is None and parquet is None:
-        raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     if parquet is not None:
         table = parsed(parquet, store.root)
         mark = (table.schema.metadata or {}).get(CSV_HASH, b"").decode()
         if mended is None or hashlib.sha256(mended).hexdigest() == mark:
             return checked(table.to_pylist(), table.column_names, parquet, PARQUET)
-    assert mended is not None
+    if mended is None:
+        raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    return checked(rows, names, mended, CSV)
+    return replace(checked(rows, names, mended, CSV), mended=parquet is not None)
 
 
 def optional(store: Store, name: str) -> bytes | None:

@@ -32,9 +32,9 @@ class Models:
         if not path.is_file():
             raise Unlocked(f"{self.folder} has no {LOCK}: name a folder that has one")
         lock = json.loads(path.read_text())
-        if name not in lock:
-            raise Unlocked(f"{path} names no network {name!r}, only {sorted(lock)}")
-        return lock[name]
+        if f"{name}.onnx" not in lock:
+            raise Unlocked(f"{path} names no {name}.onnx, only {sorted(lock)}")
+        return lock[f"{name}.onnx"]
 
     def load(self, name: str) -> Callable[..., Any]:
         """Load a network, and refuse a file that is not the one the lock names."""

@@ -1,4 +1,4 @@
-"""Artifacts: what a stage made of one photo or facade, kept under the key of its making.
+"""Artifacts: what a stage made of a photo or facade, kept under a key of its making.
 
     CITY/artifacts/<stage>/<stage version>/<first two hex digits>/<key>.parquet
 

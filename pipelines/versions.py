@@ -4,39 +4,80 @@
 
 The code version is raised by hand when a stage's results change; a comment or a rename
 must not send an archive back to its first photo. The parameters are the defaults in the
-signatures of the stage's functions, so that a changed default can't be forgotten.
+signatures of the stage's functions and the constants of its modules, so that a changed
+one can't be forgotten.
 """
 
 import inspect
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any, Final
 
-from nostalgin_core import inpaint, matte, photo, rectify, segment
+from nostalgin_core import (
+    amodal,
+    apart,
+    atlas,
+    block,
+    camera,
+    chain,
+    cuboid,
+    facade,
+    frame,
+    gltf,
+    inpaint,
+    laplacian,
+    lines,
+    matte,
+    mesh,
+    outline,
+    photo,
+    picture,
+    quad,
+    rectify,
+    segment,
+    smooth,
+    target,
+    trimap,
+    upright,
+    vanish,
+    warp,
+)
 from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {"segment": 1, "matte": 1, "rectify": 1, "inpaint": 1, "block": 1}
-FUNCTIONS: Final[dict[str, tuple[Callable[..., Any], ...]]] = {
-    "segment": (photo.decode, segment.segment),
-    "matte": (matte.matte,),
-    "rectify": (rectify.rectify,),
-    "inpaint": (inpaint.inpaint,),
-    "block": (),
+MODULES: Final[dict[str, tuple[ModuleType, ...]]] = {
+    "segment": (photo, frame, segment),
+    "matte": (facade, target, amodal, trimap, laplacian, smooth, matte),
+    "rectify": (lines, vanish, upright, quad, camera, warp, rectify),
+    "inpaint": (inpaint,),
+    "block": (chain, outline, apart, cuboid, block, atlas, mesh, picture, gltf),
 }
+PLAIN: Final = (bool, int, float, str, tuple)
 NETWORK: Final = {"segment": "segment", "inpaint": "inpaint"}
 
 
-def parameters(*functions: Callable[..., Any]) -> str:
-    """Write the defaults of functions as text, in the order of the signatures."""
-    found = [
-        [function.__name__, name, repr(one.default)]
-        for function in functions
+def parameters(*modules: ModuleType) -> str:
+    """Write the constants of modules and the defaults of their functions as text."""
+    told = []
+    for module in modules:
+        for name, one in sorted(vars(module).items()):
+            if inspect.isfunction(one) and one.__module__ == module.__name__:
+                told += [[name, *default] for default in defaults(one)]
+            elif name.isupper() and isinstance(one, PLAIN):
+                told.append([module.__name__, name, repr(one)])
+    return json.dumps(told)
+
+
+def defaults(function: Callable[..., Any]) -> list[list[str]]:
+    """List the defaults in a signature."""
+    return [
+        [name, repr(one.default)]
         for name, one in inspect.signature(function).parameters.items()
         if one.default is not inspect.Parameter.empty
     ]
-    return json.dumps(found)
 
 
 def version(stage: str, models: Models) -> str:
@@ -46,7 +87,7 @@ def version(stage: str, models: Models) -> str:
         Unlocked: if the stage's network has no lock.
     """
     network = models.sha256(NETWORK[stage]) if stage in NETWORK else ""
-    return f"{CODE[stage]}-{key_of(parameters(*FUNCTIONS[stage]), network)[:8]}"
+    return f"{CODE[stage]}-{key_of(parameters(*MODULES[stage]), network)[:8]}"
 
 
 @dataclass(frozen=True)

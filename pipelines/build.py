@@ -1,0 +1,190 @@
+"""One build from its manifest to its published run."""
+
+import json
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import apache_beam as beam
+from apache_beam.options.pipeline_options import PipelineOptions
+from apache_beam.runners.runner import PipelineResult
+
+from pipelines import manifest, runs
+from pipelines.city import Built, city
+from pipelines.manifest import Manifest
+from pipelines.models import Models
+from pipelines.options import CityOptions, part
+from pipelines.plan import Plan, plan
+from pipelines.progress import Voice, Watch
+from pipelines.runs import WriteTable
+from pipelines.stages import Bench
+from pipelines.store import Store
+from pipelines.versions import versions
+
+CURRENT: Final = "CURRENT"
+
+
+class Lost(RuntimeError):  # noqa: N818 - it reads as what it is about
+    """Work that a runner neither did nor rejected."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """What came of a build."""
+
+    run: str
+    photos: int
+    rejected_photos: int
+    facades: int
+    blocks: int
+    buildings: int
+    assumed: int
+    rejections: tuple[dict[str, Any], ...]
+
+    @property
+    def rejected_share(self) -> float:
+        """Tell which share of the photos gave nothing at all."""
+        return self.rejected_photos / max(self.photos, 1)
+
+    def reasons(self) -> list[tuple[str, int]]:
+        """Count rejections by stage and reason, most first."""
+        counted = Counter(f"{r['stage']}: {r['reason']}" for r in self.rejections)
+        return sorted(counted.items(), key=lambda one: (-one[1], one[0]))
+
+
+def build(options: PipelineOptions, voice: Voice) -> Report:
+    """Build what the manifest asks for, check that nothing was lost, and publish.
+
+    Raises:
+        Unusable: if the manifest can't be read.
+        Lost: if a runner lost work.
+    """
+    ours = options.view_as(CityOptions)
+    store, shard = Store(ours.city), part(ours.shard)
+    found = manifest.read(store)
+    for warning in found.warnings:
+        voice.say("warning", f"warning: {warning}", text=warning)
+    if found.mended:
+        manifest.write(store, [row.cells for row in found.rows])
+    models = Models(ours.models) if ours.models else Models()
+    bench = Bench(store, versions(models), models)
+    todo = plan(found.rows, city=ours.city, shard=shard)
+    run = runs.run_id(found.sha256, bench.versions, ours.shard)
+    voice.say(
+        "start",
+        f"run {run}: {len(todo.photos)} photos, {len(todo.blocks)} blocks",
+        run=run,
+        photos=len(todo.photos),
+        blocks=len(todo.blocks),
+    )
+    began = time.time()
+    with Watch(store, bench.versions, len(todo.photos), voice):
+        result = launched(options, todo, found, bench, run)
+    check(store, run, todo)
+    note(store, run, options, began, result)
+    report = reported(store, run, todo)
+    if shard == (1, 1):
+        publish(store, run)
+    return report
+
+
+def launched(
+    options: PipelineOptions, todo: Plan, found: Manifest, bench: Bench, run: str
+) -> PipelineResult:
+    """Run the pipeline to its end."""
+    known = Plan(todo.photos, todo.blocks, (*found.rejections, *todo.rejections))
+    pipeline = beam.Pipeline(options=options)
+    write(city(pipeline, known, bench), bench, run)
+    result = pipeline.run()
+    result.wait_until_finish()
+    return result
+
+
+def write(built: Built, bench: Bench, run: str) -> None:
+    """Wire the run's tables."""
+    store, of = bench.store, bench.versions
+    for name, elements, rows in (
+        ("photos", built.photos, runs.photo_rows),
+        ("facades", built.facades, runs.FacadeRows(of)),
+        ("buildings", built.blocks, runs.BuildingRows(of)),
+        ("blocks", built.blocks, runs.block_rows),
+        ("rejections", built.rejections, runs.rejection_rows),
+    ):
+        _ = elements | f"Table {name}" >> WriteTable(store, run, name, rows)
+
+
+def check(store: Store, run: str, todo: Plan) -> None:
+    """Insist that each photo and each block was made or rejected.
+
+    Raises:
+        Lost: if one was neither.
+    """
+    rejected = {row["key"] for row in runs.read_table(store, run, "rejections")}
+    facades = {row["name"] for row in runs.read_table(store, run, "facades")}
+    blocks = {row["block"] for row in runs.read_table(store, run, "blocks")}
+    lost = [ref.name for ref in todo.photos if ref.name not in facades | rejected]
+    lost += [task.block for task in todo.blocks if task.block not in blocks | rejected]
+    if lost:
+        raise Lost(
+            f"the runner lost {len(lost)} photos or blocks, {lost[0]} first: "
+            "build again; what was done is kept"
+        )
+
+
+def reported(store: Store, run: str, todo: Plan) -> Report:
+    """Sum up a run from its tables."""
+    facades = runs.read_table(store, run, "facades")
+    seen = {row["name"] for row in facades}
+    blocks = runs.read_table(store, run, "blocks")
+    return Report(
+        run=run,
+        photos=len(todo.photos),
+        rejected_photos=sum(ref.name not in seen for ref in todo.photos),
+        facades=len(facades),
+        blocks=len(blocks),
+        buildings=sum(row["buildings"] for row in blocks),
+        assumed=sum(row["assumed"] for row in blocks),
+        rejections=tuple(runs.read_table(store, run, "rejections")),
+    )
+
+
+def note(
+    store: Store,
+    run: str,
+    options: PipelineOptions,
+    began: float,
+    result: PipelineResult,
+) -> None:
+    """Write when the run was and what its stages took: the only file with clock times."""
+    told = {
+        "run": run,
+        "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
+        "seconds": round(time.time() - began, 1),
+        "stages": stages(result),
+        "options": {
+            k: str(v)
+            for k, v in sorted(options.get_all_options(drop_default=True).items())
+        },
+    }
+    text = json.dumps(told, indent=1, sort_keys=True) + "\n"
+    store.write_bytes(f"runs/{run}/run.json", text.encode())
+
+
+def stages(result: PipelineResult) -> dict[str, dict[str, int]]:
+    """Read the counters and times of all stages."""
+    metrics = result.metrics().query()
+    told: dict[str, dict[str, int]] = {}
+    for one in metrics["counters"]:
+        mine = told.setdefault(one.key.metric.namespace, {})
+        mine[one.key.metric.name] = mine.get(one.key.metric.name, 0) + one.result
+    for one in metrics["distributions"]:
+        mine = told.setdefault(one.key.metric.namespace, {})
+        mine["milliseconds"] = mine.get("milliseconds", 0) + one.result.sum
+    return told
+
+
+def publish(store: Store, run: str) -> None:
+    """Write the site, and only then point at the run."""
+    store.write_bytes(CURRENT, f"{run}\n".encode())

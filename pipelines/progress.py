@@ -1,0 +1,117 @@
+"""How far a build has come, told while it runs.
+
+A stage has done as many photos as it has artifacts, wherever its workers are: so the
+watcher looks into the store, and asks no runner.
+"""
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
+
+from rich.console import Console
+
+from pipelines.store import ARTIFACTS, Store
+from pipelines.versions import Versions
+
+WATCHED: Final = ("segment", "matte", "rectify", "inpaint", "block")
+EVERY_S: Final = 2.0  # a photo takes seconds
+SAY_EVERY_S: Final = 30.0  # without a terminal every line stays
+
+
+@dataclass
+class Voice:
+    """Tells people in lines, or machines in JSON, a line an event."""
+
+    console: Console
+    machine: bool = False
+
+    def say(self, event: str, text: str, **facts: Any) -> None:
+        """Tell one event."""
+        if self.machine:
+            print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
+        else:
+            self.console.print(text, markup=False, highlight=False)
+
+
+@dataclass
+class Watch:
+    """Watches a store while a block of code runs, and tells what was added.
+
+    Only a store on this machine is watched; a remote one has its runner's own pages.
+    """
+
+    store: Store
+    versions: Versions
+    photos: int
+    voice: Voice
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _thread: threading.Thread | None = None
+
+    def __enter__(self) -> Self:
+        """Start to watch."""
+        if "://" not in self.store.root:
+            self._thread = threading.Thread(target=self._loop, daemon=True)
+            self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Stop."""
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _loop(self) -> None:
+        began, before = time.monotonic(), self.counts()
+        terminal = self.voice.console.is_terminal and not self.voice.machine
+        every = EVERY_S if terminal else SAY_EVERY_S
+        tell = self._status if terminal else self._lines
+        tell(lambda: self._facts(before, time.monotonic() - began), every)
+
+    def _status(self, facts: Callable[[], dict[str, Any]], every: float) -> None:
+        with self.voice.console.status("starting") as status:
+            while not self._stop.wait(every):
+                status.update(self._text(facts()))
+
+    def _lines(self, facts: Callable[[], dict[str, Any]], every: float) -> None:
+        while not self._stop.wait(every):
+            now = facts()
+            self.voice.say("progress", self._text(now), **now)
+
+    def _facts(self, before: dict[str, int], seconds: float) -> dict[str, Any]:
+        now = self.counts()
+        new = {stage: now[stage] - before[stage] for stage in WATCHED}
+        rate = 60 * new["rectify"] / max(seconds, 1e-9)
+        return {
+            "photos": self.photos,
+            "there": now,
+            "new": new,
+            "photos_per_minute": round(rate, 1),
+        }
+
+    def _text(self, facts: dict[str, Any]) -> str:
+        parts = [f"{stage} {facts['there'][stage]}" for stage in WATCHED]
+        rate = facts["photos_per_minute"]
+        return f"{', '.join(parts)} of {self.photos} photos, {rate} photos a minute"
+
+    def counts(self) -> dict[str, int]:
+        """Count the artifacts of each stage's present version."""
+        top = Path(self.store.root) / ARTIFACTS
+        return {
+            stage: sum(
+                1
+                for _ in (top / stage / getattr(self.versions, stage)).glob(
+                    "*/*.parquet"
+                )
+            )
+            for stage in WATCHED
+        }
