@@ -86,4 +86,4 @@ def _stand(
     shade = rng.uniform(0.8, 1.2)
     blended = soft * np.clip(patch * shade, 0, 255) + (1 - soft) * there
     there[:] = np.round(blended).astype(np.uint8)
-    return Thing(donor.category, polygon + (x0, y0), layer)
+    return Thing(donor.category, polygon + np.array([x0, y0]), layer)

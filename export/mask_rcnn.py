@@ -11,12 +11,11 @@ mask of probabilities over its box.
 """
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import torch
-import torch.nn.functional as F
 from torch import Tensor, nn
+from torch.nn import functional
 from torchvision.models.detection.anchor_utils import AnchorGenerator
 from torchvision.models.detection.faster_rcnn import FastRCNNPredictor, TwoMLPHead
 from torchvision.models.detection.image_list import ImageList
@@ -50,14 +49,19 @@ class SameConv(nn.Conv2d):
     def forward(self, x: Tensor) -> Tensor:
         """Keep the size at stride 1; halve it at stride 2, padding right and below."""
         if self.kernel_size[0] == 3:
-            x = F.pad(x, (0, 1, 0, 1) if self.stride[0] == 2 else (1, 1, 1, 1))
-        return F.conv2d(x, self.weight, self.bias, self.stride, 0, 1, self.groups)
+            x = functional.pad(x, (0, 1, 0, 1) if self.stride[0] == 2 else (1, 1, 1, 1))
+        return functional.conv2d(
+            x, self.weight, self.bias, self.stride, 0, 1, self.groups
+        )
 
 
 class Bottleneck(nn.Module):
     """Widens, filters each channel by itself, and narrows again."""
 
-    def __init__(self, narrow_in: int, narrow_out: int, stride: int, widening: int):
+    def __init__(
+        self, narrow_in: int, narrow_out: int, stride: int, widening: int
+    ) -> None:
+        """Skip the widening where it is 1."""
         super().__init__()
         wide = narrow_in * widening
         self.expand = SameConv(narrow_in, wide, 1) if widening != 1 else None
@@ -67,15 +71,16 @@ class Bottleneck(nn.Module):
 
     def forward(self, x: Tensor) -> Tensor:
         """Map (n, narrow_in, h, w) to (n, narrow_out, h / stride, w / stride)."""
-        y = x if self.expand is None else F.relu6(self.expand(x))
-        y = self.project(F.relu6(self.depthwise(y)))
+        y = x if self.expand is None else functional.relu6(self.expand(x))
+        y = self.project(functional.relu6(self.depthwise(y)))
         return x + y if self.residual else y
 
 
 class MobileNetV2(nn.Module):
     """The backbone's seven stages, tapped at four strides."""
 
-    def __init__(self):
+    def __init__(self) -> None:
+        """Stack the stages of the table above."""
         super().__init__()
         self.stem = SameConv(1, 32, 3, 2)
         blocks, narrow = [], 32
@@ -88,7 +93,7 @@ class MobileNetV2(nn.Module):
 
     def forward(self, x: Tensor) -> dict[str, Tensor]:
         """Return features at strides 4, 8, 16 and 32, named "0" to "3"."""
-        x = F.relu6(self.stem(x))
+        x = functional.relu6(self.stem(x))
         taps = {}
         for i, block in enumerate(self.blocks):
             x = block(x)
@@ -100,7 +105,8 @@ class MobileNetV2(nn.Module):
 class Backbone(nn.Module):
     """MobileNetV2 and a feature pyramid with one more level at stride 64."""
 
-    def __init__(self):
+    def __init__(self) -> None:
+        """Give every tap the same number of channels."""
         super().__init__()
         self.body = MobileNetV2()
         widths = [24, 32, 96, 320]
@@ -114,7 +120,7 @@ class Backbone(nn.Module):
 class MaskRCNN(nn.Module):
     """Backbone, region proposals, box head and mask head in one module."""
 
-    def __init__(self, *, detections: int = 40, score: float = 0.1):
+    def __init__(self, *, detections: int = 40, score: float = 0.1) -> None:
         """Keep at most `detections` things, each surer than `score`.
 
         40 is twice what a photograph of the training set shows; every mask costs time.
@@ -124,7 +130,9 @@ class MaskRCNN(nn.Module):
         self.rpn = _proposals()
         self.roi_heads = _heads(detections, score)
 
-    def forward(self, gray: Tensor, targets: list[dict[str, Tensor]] | None = None):
+    def forward(
+        self, gray: Tensor, targets: list[dict[str, Tensor]] | None = None
+    ) -> tuple[Tensor, ...] | dict[str, Tensor]:
         """Return (boxes, labels, scores, masks) of one photo, or losses if training."""
         height, width = gray.shape[-2:]
         images = ImageList(gray, [(height, width)] * gray.shape[0])
@@ -194,20 +202,4 @@ def freeze(network: MaskRCNN) -> None:
     """Leave the first, widest stages as they are: they need no gradient."""
     body = network.backbone.body
     for part in (body.stem, *body.blocks[:FROZEN_BLOCKS]):
-        part.requires_grad_(False)
-
-
-def read_weights(path: Path) -> dict[str, np.ndarray]:
-    """Read arrays named as in `state_dict` from `.npz`, exported `.onnx` or `.pt`.
-
-    Of a checkpoint (`.pt`) the averaged weights are read.
-    """
-    if path.suffix == ".pt":
-        average = torch.load(path, weights_only=True)["average"]
-        return {name: value.numpy() for name, value in average.items()}
-    if path.suffix == ".onnx":
-        from export.mask_rcnn_onnx import weights_of
-
-        return weights_of(path)
-    with np.load(path) as arrays:
-        return {name: arrays[name] for name in arrays.files}
+        part.requires_grad_(requires_grad=False)

@@ -22,13 +22,13 @@ import torch
 from jaxtyping import Float32
 from onnx import TensorProto, helper, numpy_helper
 
-from export.mask_rcnn import MaskRCNN, load_weights, read_weights
+from export.mask_rcnn import MaskRCNN, load_weights
+from export.weights import CAST, read_weights
 from nostalgin_core import session
 from nostalgin_core.segment import prepared
 
 OPSET = 17
 OUTPUTS = ("boxes", "labels", "scores", "masks")
-CAST = "|half"  # ends the names of weights that are stored in half precision
 SMALLEST_HALVED = 64  # biases weigh nothing and stay exact
 TOLERANCE = 0.05  # px, and hundredths of that in scores: rounding, added up
 
@@ -71,14 +71,6 @@ def halved(model: onnx.ModelProto) -> onnx.ModelProto:
     model.graph.node.extend(nodes)
     onnx.checker.check_model(model, full_check=True)
     return model
-
-
-def weights_of(path: Path) -> dict[str, np.ndarray]:
-    """Read the named weights back out of an exported file."""
-    model = onnx.load(str(path))
-    arrays = {w.name: numpy_helper.to_array(w) for w in model.graph.initializer}
-    named = {k.removesuffix(CAST): v for k, v in arrays.items()}
-    return {k: v for k, v in named.items() if k.startswith(("backbone", "rpn", "roi"))}
 
 
 def rounded(network: MaskRCNN) -> MaskRCNN:

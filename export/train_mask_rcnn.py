@@ -21,9 +21,10 @@ from torch import Tensor
 
 from export.copy_paste import Donor, donors, paste
 from export.held_out import figures
-from export.mask_rcnn import MaskRCNN, freeze, load_weights, read_weights
+from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.segmentation_data import Sample, read_folder, truth, view
 from export.wear import wear
+from export.weights import read_weights
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ def advance(
     for turn in range(schedule.batch):
         rng = np.random.default_rng([schedule.seed, run.step, turn])
         losses = run.network(*drawn(pools, cut, rng))
-        (sum(losses.values()) / schedule.batch).backward()
+        torch.stack(list(losses.values())).sum().div(schedule.batch).backward()
         for name, loss in losses.items():
             sums[name] = sums.get(name, 0.0) + loss.item() / schedule.batch
     learning = [p for p in run.network.parameters() if p.requires_grad]

@@ -13,7 +13,7 @@ import onnxruntime
 Session = Callable[..., tuple[np.ndarray, ...]]
 
 
-class ModelChanged(Exception):
+class ModelChangedError(Exception):
     """A model file is not the one that was promised."""
 
 
@@ -23,11 +23,11 @@ def load(data: bytes, sha256: str, *, threads: int = 1) -> Session:
     One thread is right where several processes share the cores. The arena of memory is
     not kept between calls: photographs differ in size, and it would only grow.
 
-    Raises ModelChanged where the bytes have another checksum.
+    Raises ModelChangedError where the bytes have another checksum.
     """
     found = hashlib.sha256(data).hexdigest()
     if found != sha256:
-        raise ModelChanged(
+        raise ModelChangedError(
             f"model has SHA-256 {found}, but {sha256} was promised: install the "
             "package again, or, if the file was retrained on purpose, write its new "
             "checksum to models.lock"
@@ -43,6 +43,7 @@ def load(data: bytes, sha256: str, *, threads: int = 1) -> Session:
     names = [given.name for given in runtime.get_inputs()]
 
     def run(*arrays: np.ndarray) -> tuple[np.ndarray, ...]:
-        return tuple(runtime.run(None, dict(zip(names, arrays, strict=True))))
+        outputs = runtime.run(None, dict(zip(names, arrays, strict=True)))
+        return tuple(np.asarray(output) for output in outputs)
 
     return run

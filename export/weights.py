@@ -1,0 +1,33 @@
+"""Named weights are read back from whatever they were kept in.
+
+Training goes on from the shipped ONNX file: it keeps the names of `state_dict`, and no
+other copy of the weights is needed.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import onnx
+import torch
+from onnx import numpy_helper
+
+CAST = "|half"  # ends the names of weights that an ONNX file stores in half precision
+
+
+def read_weights(path: Path) -> dict[str, np.ndarray]:
+    """Read `.npz`, an exported `.onnx`, or the averaged weights of a checkpoint."""
+    if path.suffix == ".pt":
+        average = torch.load(path, weights_only=True)["average"]
+        return {name: value.numpy() for name, value in average.items()}
+    if path.suffix == ".onnx":
+        return weights_of(onnx.load(str(path)))
+    with np.load(path) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+def weights_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
+    """Read the named weights of an exported network, in the precision kept."""
+    arrays = {w.name: numpy_helper.to_array(w) for w in model.graph.initializer}
+    named = {name.removesuffix(CAST): array for name, array in arrays.items()}
+    parts = ("backbone", "rpn", "roi_heads")
+    return {name: a for name, a in named.items() if name.startswith(parts)}
