@@ -1,0 +1,356 @@
+"""Find the straight pieces of an image's contours, to a fraction of a pixel.
+
+Edges are linked into contours, every contour point is called linear or not by how fast
+the contour turns on either side of it, and a line is fitted to each run of linear
+points. What bends (trees, people, ornament) leaves no line, which is the point.
+
+Letters, as in the paper (section 3.3.1 and the appendix): `alpha` is the direction of
+the contour at a point, `L` and `R` are the mean turn between a point and the `k_s`
+points before and after it, `t_alpha` the turn from which a point is not linear.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy import sparse
+
+from nostalgin_core.arrays import Gray, Lines, Mask, Points
+
+MEDIAN_SPREAD = 0.33  # the paper's lambda
+EVEN_PX = 24.0  # about a window with its wall
+FLOOR = 6.0  # gray levels of contrast below which nothing is amplified fully
+CONTRAST = 60.0  # gray levels that one standard deviation becomes
+BLUR_PX = 0.8  # half of what grain and scan need; more rounds off window corners
+CHORD_PX = 4  # contour points on either side that give the direction at a point
+STRICT = (16, 4.0)  # k_s, t_alpha in degrees: where candidates are accumulated
+LOOSE = (8, 9.0)  # and where lines vote
+STRAY_PX = 1.2  # a run that leaves its line by more is cut there
+CUTS = 4  # rounds of cutting; each can halve what is left
+TUKEY_PX = 1.5  # beyond it a point has next to no say in its line
+SHORTEST_PX = 8.0  # shorter lines say nothing about direction
+ROUGHEST_PX = 0.6  # the root mean square distance of a line's points
+
+# The eight neighbours as (dy, dx); a diagonal's two common 4-neighbours follow it.
+_FOUR = ((0, 1), (1, 0))
+_DIAGONAL = ((1, 1), (1, -1))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contours:
+    """Edge points in their order along contours; contours lie one after another."""
+
+    points: Points  # to a fraction of a pixel
+    contour: Int[np.ndarray, " n"]  # the number of each point's contour, ascending
+
+
+def canny_thresholds(image: Gray, *, spread: float = MEDIAN_SPREAD) -> tuple[int, int]:
+    """Place Canny's thresholds round the image's median (section 3.3.1, equation 1)."""
+    median = float(np.median(image))
+    low, high = max(0.0, median * (1 - spread)), min(255.0, median * (1 + spread))
+    return round(low), max(round(high), 1)
+
+
+def even_out(image: Gray, *, reach: float = EVEN_PX, floor: float = FLOOR) -> Gray:
+    """Give every neighbourhood the same middle gray and the same contrast.
+
+    One median for the whole photo would leave a front in shade without any edge. The
+    local mean and standard deviation are Gaussian with `reach` pixels; `floor`, in gray
+    levels, keeps grain in an empty sky from being blown up.
+    """
+    size = max(1, round(reach))
+    small = cv2.resize(
+        image, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA
+    ).astype(np.float32)
+    mean = cv2.GaussianBlur(small, (0, 0), size / 2)
+    square = cv2.GaussianBlur(small * small, (0, 0), size / 2)
+    spread = np.sqrt(np.maximum(square - mean * mean, 0)) + np.float32(floor)
+    h, w = image.shape
+    mean, spread = (cv2.resize(a, (w, h)) for a in (mean, spread))
+    level = (image - mean) / spread * np.float32(CONTRAST) + 128
+    return np.clip(level, 0, 255).astype(np.uint8)
+
+
+def edges(image: Gray, low: int, high: int) -> tuple[Mask, Points]:
+    """Find edge pixels, and where between pixels the edge runs.
+
+    The gradient's magnitude is sampled one pixel to either side across the edge, and
+    a parabola through the three values peaks where the edge is.
+
+    Returns: the edge mask, and for each edge pixel in raster order its (x, y).
+    """
+    smooth = cv2.GaussianBlur(image, (0, 0), BLUR_PX)
+    dx = cv2.Sobel(smooth, cv2.CV_16S, 1, 0)
+    dy = cv2.Sobel(smooth, cv2.CV_16S, 0, 1)
+    mask = cv2.Canny(dx, dy, low, high, L2gradient=True) > 0
+    mask[[0, -1], :] = False
+    mask[:, [0, -1]] = False
+    magnitude = cv2.magnitude(dx.astype(np.float32), dy.astype(np.float32))
+    y, x = np.nonzero(mask)
+    gx, gy, peak = dx[y, x] * 1.0, dy[y, x] * 1.0, magnitude[y, x].astype(np.float64)
+    steep = np.maximum(np.abs(gx), np.abs(gy))
+    step_x, step_y = gx / steep, gy / steep  # to the next pixel across the edge
+    before = _between(magnitude, x - step_x, y - step_y)
+    after = _between(magnitude, x + step_x, y + step_y)
+    curve = 2 * peak - before - after
+    shift = np.where(curve > 1e-6, 0.5 * (after - before) / np.maximum(curve, 1e-6), 0)
+    shift = np.clip(shift, -0.7, 0.7)
+    return mask, np.column_stack([x + shift * step_x, y + shift * step_y])
+
+
+def _between(
+    values: Float[np.ndarray, "h w"],
+    x: Float[np.ndarray, " n"],
+    y: Float[np.ndarray, " n"],
+) -> Float[np.ndarray, " n"]:
+    """Read an array between its pixels, bilinearly; all points lie inside."""
+    x0, y0 = np.floor(x).astype(np.intp), np.floor(y).astype(np.intp)
+    x1 = np.minimum(x0 + 1, values.shape[1] - 1)
+    y1 = np.minimum(y0 + 1, values.shape[0] - 1)
+    tx, ty = x - x0, y - y0
+    top = values[y0, x0] * (1 - tx) + values[y0, x1] * tx
+    bottom = values[y1, x0] * (1 - tx) + values[y1, x1] * tx
+    return top * (1 - ty) + bottom * ty
+
+
+def link(mask: Mask, points: Points, *, shortest: int = 8) -> Contours:
+    """Link edge pixels into contours, in order, without a loop over pixels.
+
+    Two pixels are neighbours if they touch, but a diagonal counts only where no pixel
+    bridges it, so a staircase is one thin path. Pixels with three or more neighbours
+    are junctions and are taken out: what is left are paths and closed loops, and a loop
+    is cut at its first pixel. All paths are then tied end to start into one long chain,
+    whose order a single graph traversal reads off.
+
+    Contours of fewer than `shortest` points are dropped; they hold no line.
+    """
+    first, second = _neighbours(mask)
+    n = len(points)
+    degree = np.bincount(np.concatenate([first, second]), minlength=n)
+    kept = (degree[first] <= 2) & (degree[second] <= 2)
+    first, second = first[kept], second[kept]
+    count, label = _components(first, second, n)
+    size = np.bincount(label, minlength=count)
+    links = np.bincount(label[first], minlength=count)
+    loop = np.flatnonzero((links == size) & (size > 2))
+    if len(loop):  # cut each loop: drop the first link that is met in it
+        _, cut = np.unique(label[first], return_index=True)
+        keep = np.ones(len(first), bool)
+        keep[cut[np.isin(label[first[cut]], loop)]] = False
+        first, second = first[keep], second[keep]
+    degree = np.bincount(np.concatenate([first, second]), minlength=n)
+    ends = np.flatnonzero((degree == 1) & (size[label] >= shortest))
+    if not len(ends):
+        return Contours(np.empty((0, 2)), np.empty(0, np.intp))
+    ends = ends[np.argsort(label[ends], kind="stable")]
+    start, stop = ends[::2], ends[1::2]
+    used = size[label[first]] >= shortest
+    rows = np.concatenate([first[used], stop[:-1]])
+    columns = np.concatenate([second[used], start[1:]])
+    chain = sparse.coo_matrix((np.ones(len(rows), np.int8), (rows, columns)), (n, n))
+    order = sparse.csgraph.depth_first_order(
+        chain.tocsr(), start[0], directed=False, return_predecessors=False
+    )
+    contour = np.cumsum(np.diff(label[order], prepend=label[order[0]]) != 0)
+    return Contours(points[order], contour.astype(np.intp))
+
+
+def _neighbours(
+    mask: Mask,
+) -> tuple[Int[np.ndarray, " m"], Int[np.ndarray, " m"]]:
+    """List the pairs of neighbouring edge pixels, as ranks in raster order."""
+    h, w = mask.shape
+    rank = np.cumsum(mask.ravel()).reshape(h, w) - 1
+    pairs = []
+    for dy, dx in (*_FOUR, *_DIAGONAL):
+        a = np.s_[: h - dy, max(0, -dx) : w - max(0, dx)]
+        b = np.s_[dy:, max(0, dx) : w - max(0, -dx)]
+        both = mask[a] & mask[b]
+        if dx and dy:  # (0, dx) and (dy, 0) from a are the common neighbours
+            beside = np.s_[: h - dy, max(0, dx) : w - max(0, -dx)]
+            below = np.s_[dy:, max(0, -dx) : w - max(0, dx)]
+            both &= ~mask[beside] & ~mask[below]
+        pairs.append((rank[a][both], rank[b][both]))
+    return (
+        np.concatenate([p[0] for p in pairs]),
+        np.concatenate([p[1] for p in pairs]),
+    )
+
+
+def _components(
+    first: Int[np.ndarray, " m"], second: Int[np.ndarray, " m"], n: int
+) -> tuple[int, Int[np.ndarray, " n"]]:
+    """Label the connected components of a graph of `n` nodes."""
+    graph = sparse.coo_matrix((np.ones(len(first), np.int8), (first, second)), (n, n))
+    count, label = sparse.csgraph.connected_components(graph.tocsr(), directed=False)
+    return count, label.astype(np.intp)
+
+
+def directions(contours: Contours) -> Float[np.ndarray, " n"]:
+    """Measure alpha, the contour's direction at each point, in degrees modulo 180.
+
+    A chord to `CHORD_PX` points on either side is used (fewer at a contour's ends):
+    the direction between neighbouring pixels knows only steps of 45 degrees.
+    """
+    n = len(contours.points)
+    start, stop = _extent(contours.contour)
+    here = np.arange(n)
+    chord = (
+        contours.points[np.minimum(here + CHORD_PX, stop - 1)]
+        - contours.points[np.maximum(here - CHORD_PX, start)]
+    )
+    return np.degrees(np.arctan2(chord[:, 1], chord[:, 0])) % 180
+
+
+def _extent(
+    contour: Int[np.ndarray, " n"],
+) -> tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]:
+    """Give each point the first index of its contour, and one past the last."""
+    if not len(contour):
+        return np.empty(0, np.intp), np.empty(0, np.intp)
+    change = np.flatnonzero(np.diff(contour, prepend=contour[0] - 1))
+    bound = np.append(change, len(contour))
+    run = np.cumsum(np.diff(contour, prepend=contour[0]) != 0)
+    return bound[run], bound[run + 1]
+
+
+def turns(
+    contours: Contours, alpha: Float[np.ndarray, " n"], k_s: int
+) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """Measure L and R, the mean turn to the `k_s` points before and after, in degrees.
+
+    Near a contour's end the mean is over the points that there are (section 3.3.1,
+    equations 3 and 4; they leave the ends open).
+    """
+    n = len(alpha)
+    left, right = np.zeros(n), np.zeros(n)
+    before, after = np.zeros(n), np.zeros(n)
+    for d in range(1, min(k_s, n - 1) + 1):
+        turn = np.abs(alpha[d:] - alpha[:-d])
+        turn = np.minimum(turn, 180 - turn)
+        same = contours.contour[d:] == contours.contour[:-d]
+        turn = np.where(same, turn, 0.0)
+        left[d:] += turn
+        before[d:] += same
+        right[:-d] += turn
+        after[:-d] += same
+    return left / np.maximum(before, 1), right / np.maximum(after, 1)
+
+
+def linear(contours: Contours, k_s: int, t_alpha: float) -> Bool[np.ndarray, " n"]:
+    """Tell which contour points are locally linear (appendix, algorithm 1, mended).
+
+    The printed algorithm walks a state `oncurve` along the contour: a point whose
+    right side is straight ends a curve, one whose left side bends starts one. Changed:
+
+    - the first loop assigns `not oncurve and R < t`, which flips at every step on a
+      straight start; meant is its mirror image of the last loop, walking outwards and
+      staying on the curve once `R >= t`;
+    - the state is set to True between the loops and to False before the last, which
+      throws away what was learnt: here the middle starts from the first point's own
+      right side, and the last loop goes on from the middle's state;
+    - loops shorter than the contour's ends overlap where it has fewer than 2 k_s
+      points: there the middle is empty, and a point is linear if both sides are.
+
+    The state has memory, but only of its last change, so a running maximum over the
+    positions of changes computes it for all contours at once.
+    """
+    alpha = directions(contours)
+    left, right = turns(contours, alpha, k_s)
+    n = len(alpha)
+    start, stop = _extent(contours.contour)
+    here = np.arange(n)
+    middle = (here >= start + k_s) & (here < stop - k_s)
+    curve_starts = left >= t_alpha
+    curve_ends = (right < t_alpha) & ~curve_starts
+    decided = np.where(curve_starts | curve_ends | (here == start), here, -1)
+    last = np.maximum.accumulate(decided)
+    on_curve = ~curve_ends[last]
+    both = (left < t_alpha) & (right < t_alpha)
+    short = stop - start < 2 * k_s
+    straight = middle & ~on_curve
+    head = (here < start + k_s) & ~short
+    tail = (here >= stop - k_s) & ~short
+    # Outwards from the middle, one bend puts all that follows on the curve.
+    bends_head = np.cumsum((head & (right >= t_alpha)).astype(np.intp))
+    total_at = np.minimum(start + k_s, n) - 1
+    straight |= head & (bends_head[total_at] - bends_head + (right >= t_alpha) == 0)
+    bends_tail = np.cumsum((tail & (left >= t_alpha)).astype(np.intp))
+    entered = np.maximum(stop - k_s, 1) - 1  # the last point of the middle
+    straight |= tail & ~on_curve[entered] & (bends_tail == bends_tail[entered])
+    return straight | (short & both)
+
+
+def fit(contours: Contours, straight: Bool[np.ndarray, " p"]) -> Lines:
+    """Fit a line to each run of linear points, robustly, with ends between pixels.
+
+    The paper uses RANSAC. Points of one run are already nearly in line, so total least
+    squares with Tukey's weights converges from plain total least squares, needs no
+    random numbers and fits all runs at once. A run that strays from its line by more
+    than `STRAY_PX` is cut where it strays most, and its parts are fitted again. The
+    line's ends are the run's ends, carried onto the line.
+    """
+    points = contours.points[straight]
+    index = np.flatnonzero(straight)
+    if not len(index):
+        return np.empty((0, 4))
+    contour = contours.contour[straight]
+    breaks = (np.diff(index, prepend=index[0] - 2) > 1) | (
+        np.diff(contour, prepend=contour[0] - 1) > 0
+    )
+    for _ in range(CUTS):
+        run = np.cumsum(breaks) - 1
+        centre, along, stray = _fit_runs(points, run)
+        far = np.abs(stray)
+        first = np.flatnonzero(breaks)
+        worst = np.maximum.reduceat(far, first)
+        at = np.flatnonzero((far >= worst[run]) & (far > STRAY_PX))
+        at = at[~breaks[at]]
+        if not len(at):
+            break
+        breaks[at] = True
+    run = np.cumsum(breaks) - 1
+    centre, along, stray = _fit_runs(points, run)
+    first = np.flatnonzero(breaks)
+    last = np.append(first[1:], len(points)) - 1
+    rms = np.sqrt(np.add.reduceat(stray**2, first) / (last - first + 1))
+    reach = np.stack([points[first], points[last]], axis=1) - centre[:, None]
+    reach = np.einsum("rek,rk->re", reach, along)
+    ends = centre[:, None] + reach[..., None] * along[:, None]
+    lines = ends.reshape(-1, 4)
+    length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    return lines[(length >= SHORTEST_PX) & (rms <= ROUGHEST_PX)]
+
+
+def _fit_runs(
+    points: Points, run: Int[np.ndarray, " n"]
+) -> tuple[Float[np.ndarray, "r 2"], Float[np.ndarray, "r 2"], Float[np.ndarray, " n"]]:
+    """Fit all runs: a point on each line, its direction, each point's distance."""
+    first = np.flatnonzero(np.diff(run, prepend=-1))
+    weight = np.ones(len(points))
+    for _ in range(4):
+        total = np.add.reduceat(weight, first)
+        centre = np.add.reduceat(points * weight[:, None], first) / total[:, None]
+        away = points - centre[run]
+        xx, yy, xy = (
+            np.add.reduceat(weight * p, first)
+            for p in (away[:, 0] ** 2, away[:, 1] ** 2, away[:, 0] * away[:, 1])
+        )
+        angle = 0.5 * np.arctan2(2 * xy, xx - yy)
+        along = np.column_stack([np.cos(angle), np.sin(angle)])
+        stray = away[:, 1] * along[run, 0] - away[:, 0] * along[run, 1]
+        weight = np.maximum(1 - (stray / TUKEY_PX) ** 2, 1e-3) ** 2
+    return centre, along, stray
+
+
+def detect(
+    image: Gray, *settings: tuple[int, float], spread: float = MEDIAN_SPREAD
+) -> tuple[Float[np.ndarray, "_ 4"], ...]:
+    """Find the lines of an image once for each pair of `k_s` and `t_alpha` in degrees.
+
+    The contours are shared, since only the label of linear points depends on the pair.
+    """
+    image = even_out(image)
+    contours = link(*edges(image, *canny_thresholds(image, spread=spread)))
+    return tuple(fit(contours, linear(contours, k, t)) for k, t in settings)

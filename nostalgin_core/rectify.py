@@ -1,0 +1,221 @@
+"""Straighten every front of a photo into an elevation, or say why it can't be done.
+
+Lines, vanishing points, camera, quad, aspect ratio, homography, warp: section 3.3. All
+fronts of a photo share the camera and the way up (`upright`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from nostalgin_core import camera, lines, quad, upright, vanish, warp
+from nostalgin_core.arrays import Corners, Lines, Mask, Matrix3, Points
+from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
+
+STAGE = "rectify"
+MARGIN_PX = 2  # an outline's own lines lie just outside as often as inside
+LEAST_INSIDE = 0.5  # of a line
+LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
+LEAST_LINES = 3.0  # whose weights support a front's horizontal
+ASPECTS = (0.05, 20.0)
+TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread to this
+BOTH = "two vanishing points"
+UPRIGHT = "upright camera assumed"
+
+Parameters = Float[np.ndarray, " p"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Signal:
+    """The lines that speak for one front, in units."""
+
+    strict: Float[np.ndarray, "_ 4"]
+    loose: Lines
+    omega: Float[np.ndarray, " n"]
+    length_px: Float[np.ndarray, " n"]
+
+    @property
+    def weights(self) -> Float[np.ndarray, " n"]:
+        """Weigh the loose lines' votes: length times the share inside the front."""
+        return self.omega * self.length_px
+
+
+def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
+    """Make one elevation, or one rejection, of each facade, in their order."""
+    if not matted.facades:
+        return ()
+    found = detect(photo)
+    signals = [signal(photo, found, facade.mask) for facade in matted.facades]
+    world, seen, method = orient(signals, vertical(photo, found, matted))
+    results = []
+    rank = 0
+    for facade, has in zip(matted.facades, seen, strict=True):
+        if not has or world is None:
+            results.append(_rejected(photo, facade, "too few lines"))
+            continue
+        results.append(elevation(photo, facade, world, rank, method))
+        rank += 1
+    return tuple(results)
+
+
+def detect(photo: Photo) -> tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]]:
+    """Find the photo's strict and loose lines, in photo pixels."""
+    strict, loose = lines.detect(photo.image, lines.STRICT, lines.LOOSE)
+    return strict, loose
+
+
+def signal(
+    photo: Photo,
+    found: tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]],
+    mask: Mask,
+) -> Signal:
+    """Pick the lines of a front: those with at least half their length in its mask."""
+    near = vanish.grown(mask, MARGIN_PX)
+    strict, loose = found
+    strict = strict[vanish.inside(strict, near) >= LEAST_INSIDE]
+    omega = vanish.inside(loose, near)
+    loose, omega = loose[omega >= LEAST_INSIDE], omega[omega >= LEAST_INSIDE]
+    where = camera.centre(photo.frame), camera.prior_focal_px(photo.frame)
+    return Signal(
+        vanish.to_unit(strict, *where),
+        vanish.to_unit(loose, *where),
+        omega,
+        vanish.lengths(loose),
+    )
+
+
+def vertical(
+    photo: Photo,
+    found: tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]],
+    matted: Matted,
+) -> tuple[Float[np.ndarray, "3"], float]:
+    """Find the vertical vanishing point that all fronts share, in units."""
+    fronts = np.any([facade.mask for facade in matted.facades], axis=0)
+    everywhere = signal(photo, found, fronts)
+    return vanish.best_vertical(everywhere.strict, everywhere.loose, everywhere.weights)
+
+
+def orient(
+    signals: list[Signal], vertical: tuple[Float[np.ndarray, "3"], float]
+) -> tuple[upright.Upright | None, list[bool], str]:
+    """Fit the upright world to all fronts that have a horizontal direction.
+
+    Returns: the world, which fronts are part of it, and how it was found.
+    """
+    up, share = vertical
+    chosen = [vanish.best_horizontal(up, s.strict, s.loose, s.weights) for s in signals]
+    seen = [c is not None for c in chosen]
+    if not any(seen):
+        return None, seen, BOTH
+    kept = [s for s, has in zip(signals, seen, strict=True) if has]
+    front = np.repeat(np.arange(len(kept)), [len(s.loose) for s in kept])
+    world = upright.fit(
+        upright.start(up, np.array([c[0] for c in chosen if c is not None])),
+        np.vstack([s.loose for s in kept]),
+        front,
+        np.concatenate([s.omega for s in kept]),
+        np.concatenate([s.length_px for s in kept]),
+    )
+    return world, seen, BOTH if share > 0 else UPRIGHT
+
+
+def elevation(
+    photo: Photo, facade: Facade, world: upright.Upright, rank: int, method: str
+) -> Elevation | Rejection:
+    """Straighten one front with the world's camera."""
+    if world.support[rank + 1] < LEAST_LINES:
+        return _rejected(photo, facade, "too few lines")
+    points = quad.hull(facade.amodal)
+    if len(points) < 3 or np.min(np.ptp(points, axis=0)) < LEAST_SIDE_PX:
+        return _rejected(photo, facade, "facade too small")
+    bounded = _bounded(photo, world.parameters, rank, points)
+    if bounded is None:
+        return _rejected(photo, facade, "quad degenerate")
+    aspect, corners = bounded
+    if not ASPECTS[0] <= aspect <= ASPECTS[1]:
+        return _rejected(photo, facade, "aspect implausible", f"{aspect:.3g}")
+    shape = warp.size(corners, aspect)
+    photo_from_elevation = warp.photo_from_elevation(corners, shape)
+    image, alpha, rests_on = warp.elevate(
+        photo.image,
+        facade.alpha,
+        facade.amodal,
+        photo_from_elevation,
+        shape,
+        frame=photo.frame,
+    )
+    prior = camera.prior_focal_px(photo.frame)
+    told = world.covariance[0, 0] < (TOLD * upright.LOG_FOCAL[1]) ** 2
+    points_px = _to_photo(photo, upright.vanishing_points(world.parameters))
+    return Elevation(
+        facade=facade.index,
+        image=image,
+        alpha=alpha,
+        evidence=rests_on,
+        quad=corners,
+        photo_from_elevation=photo_from_elevation,
+        vanishing_points=points_px[[rank + 1, 0]],
+        focal_px=world.focal * prior if told else None,
+        aspect=aspect,
+        vanishing_sd_deg=upright.directions_sd_deg(world, rank),
+        focal_sd_px=world.focal * prior * float(np.sqrt(world.covariance[0, 0]))
+        if told
+        else None,
+        aspect_sd=_aspect_sd(photo, world, rank, points, aspect),
+        method=method,
+    )
+
+
+def _rejected(photo: Photo, facade: Facade, reason: str, detail: str = "") -> Rejection:
+    """Name what stopped a facade."""
+    return Rejection(photo.key, STAGE, reason, detail, facade.index)
+
+
+def _to_photo(photo: Photo, points: np.ndarray) -> np.ndarray:
+    """Carry homogeneous points from units to photo pixels."""
+    prior = camera.prior_focal_px(photo.frame)
+    return points @ camera.matrix(prior, photo.frame).T
+
+
+def _plane(photo: Photo, parameters: Parameters, rank: int, points: Points) -> Matrix3:
+    """Map a front's plane to the photo: x to the right and y down, in equal units.
+
+    The plane goes through the camera's axis at depth one. Its x axis is turned so that
+    its normal points away from the camera towards the front, or it would be mirrored.
+    """
+    focal = np.exp(parameters[0]) * camera.prior_focal_px(photo.frame)
+    photo_from_camera = camera.matrix(focal, photo.frame)
+    directions = upright.axes(parameters)
+    down, across = -directions[0], directions[rank + 1]
+    towards = np.linalg.solve(photo_from_camera, [*points.mean(axis=0), 1.0])
+    if np.cross(across, down) @ towards < 0:
+        across = -across
+    return photo_from_camera @ np.column_stack([across, down, [0.0, 0.0, 1.0]])
+
+
+def _bounded(
+    photo: Photo, parameters: Parameters, rank: int, points: Points
+) -> tuple[float, Corners] | None:
+    """Bound a front's points: the aspect ratio and the quad, or None if degenerate."""
+    plane = _plane(photo, parameters, rank, points)
+    if np.linalg.cond(plane) > 1e9:
+        return None
+    bounds = quad.bounding(plane, points)
+    if bounds is None:
+        return None
+    focal = np.exp(parameters[0]) * camera.prior_focal_px(photo.frame)
+    return camera.aspect(bounds[1], focal, photo.frame), bounds[1]
+
+
+def _aspect_sd(
+    photo: Photo, world: upright.Upright, rank: int, points: Points, aspect: float
+) -> float:
+    """Carry the world's covariance on to the aspect ratio, to first order."""
+    slope = np.zeros(len(world.parameters))
+    for i in (0, 1, 2, 3 + rank):
+        moved = world.parameters.copy()
+        moved[i] += 1e-4
+        bounded = _bounded(photo, moved, rank, points)
+        slope[i] = 0.0 if bounded is None else (bounded[0] - aspect) / 1e-4
+    return float(np.sqrt(slope @ world.covariance @ slope))

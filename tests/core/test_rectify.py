@@ -1,0 +1,88 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nostalgin_core import evidence, rectify
+from nostalgin_core.records import Elevation, Matted, Photo
+from tests.painted_front import Painted, photograph, worst_angle_deg
+
+
+@pytest.fixture(scope="module")
+def corner() -> Painted:
+    return photograph()
+
+
+@pytest.fixture(scope="module")
+def straightened(corner: Painted) -> list[Elevation]:
+    results = rectify.rectify(corner.photo, corner.matted)
+    assert all(results)
+    return [r for r in results if isinstance(r, Elevation)]
+
+
+def test_a_painted_corner_comes_out_with_right_angles(
+    corner: Painted, straightened: list[Elevation]
+) -> None:
+    for quad, result in zip(corner.quads, straightened, strict=True):
+        assert worst_angle_deg(quad, result.photo_from_elevation) < 0.5
+
+
+def test_a_painted_corner_tells_its_aspect_ratios(
+    corner: Painted, straightened: list[Elevation]
+) -> None:
+    for aspect, result in zip(corner.aspects, straightened, strict=True):
+        assert result.aspect == pytest.approx(aspect, rel=0.03)
+
+
+def test_a_painted_corner_tells_its_focal_length(
+    corner: Painted, straightened: list[Elevation]
+) -> None:
+    for result in straightened:
+        assert result.focal_px == pytest.approx(corner.focal_px, rel=0.05)
+
+
+def test_the_quad_is_the_painted_one(
+    corner: Painted, straightened: list[Elevation]
+) -> None:
+    for quad, result in zip(corner.quads, straightened, strict=True):
+        np.testing.assert_allclose(result.quad, quad, atol=3.0)
+
+
+def test_a_clear_view_is_photographed_nearly_everywhere(
+    straightened: list[Elevation],
+) -> None:
+    for result in straightened:
+        assert np.mean(result.evidence == evidence.PHOTOGRAPHED) > 0.9
+
+
+def test_what_an_occluder_hides_waits_for_the_inpainter(corner: Painted) -> None:
+    left = corner.matted.facades[0]
+    alpha = left.alpha.copy()
+    alpha[300:400, 200:260] = 0
+    hidden = replace(left, alpha=alpha)
+    (result,) = rectify.rectify(corner.photo, Matted((hidden,), ()))
+    assert isinstance(result, Elevation)
+    waiting = result.evidence == evidence.INPAINTED
+    assert np.mean(waiting) > 0.02
+    assert not result.image[waiting].any()
+
+
+def test_the_same_photo_gives_the_same_bytes(corner: Painted) -> None:
+    first, second = (
+        [r.image.tobytes() for r in rectify.rectify(corner.photo, corner.matted) if r]
+        for _ in range(2)
+    )
+    assert first == second
+
+
+def test_a_blank_wall_is_rejected_with_a_reason(corner: Painted) -> None:
+    blank = Photo("0" * 16, np.full_like(corner.photo.image, 128), corner.photo.frame)
+    results = rectify.rectify(blank, corner.matted)
+    assert [r.reason for r in results if not isinstance(r, Elevation)] == [
+        "too few lines"
+    ] * 2
+    assert [r.facade for r in results if not isinstance(r, Elevation)] == [0, 1]
+
+
+def test_a_photo_without_facades_gives_nothing(corner: Painted) -> None:
+    assert rectify.rectify(corner.photo, Matted((), ())) == ()
