@@ -3,19 +3,21 @@
 import hashlib
 import json
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
+from apache_beam.typehints.decorators import no_annotations
 
-from nostalgin_core import assign, atlas, block, gltf, mesh, picture
-from nostalgin_core.records import Assignment, Block, Building, Elevation, Rejection
+from nostalgin_core import reconstruct
+from nostalgin_core.reconstruct import Settled
+from nostalgin_core.records import Block, Building, Elevation, Rejection
 from pipelines import tables
 from pipelines.attempt import Attempt, Outcome
 from pipelines.plan import BlockTask
-from pipelines.stages import Bench, FacadeRef, Work
+from pipelines.stages import Bench, FacadeRef, Work, named
 
 MODEL: Final = pa.schema(
     [
@@ -34,24 +36,22 @@ class Placed:
 
     task: BlockTask
     facades: tuple[FacadeRef, ...]  # all that were seen, ordered
-    assignments: tuple[Assignment, ...]
-    block: Block
+    settled: Settled
 
     @property
     def key(self) -> str:
         """Name the block in rejections."""
         return self.task.block
 
+    @property
+    def block(self) -> Block:
+        """The cuboids."""
+        return self.settled.block
+
     def worn(self) -> tuple[FacadeRef, ...]:
         """List the facades that a wall wears: only these need inpainting."""
-        textures = {
-            wall.texture
-            for building in self.block.buildings
-            for wall in building.walls
-            if wall.texture is not None
-        }
-        unique = {texture_of(ref): ref for ref in reversed(self.facades)}
-        return tuple(unique[texture] for texture in sorted(textures))
+        of = {texture_of(ref): ref for ref in reversed(self.facades)}
+        return tuple(of[texture] for texture in self.settled.worn())
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,7 @@ def texture_of(ref: FacadeRef) -> tuple[str, int]:
 class Assign(beam.PTransform):
     """Blocks grouped with their facades in; blocks with cuboids out."""
 
+    @no_annotations
     def expand(self, grouped: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         return grouped | Attempt(placed, stage="assign")
@@ -90,6 +91,7 @@ class Model(beam.PTransform):
 
     bench: Bench
 
+    @no_annotations
     def expand(self, grouped: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         return grouped | Attempt(Work(modelled, self.bench), stage="block")
@@ -100,21 +102,16 @@ def placed(grouped: tuple[str, dict[str, Iterable[Any]]]) -> list[Placed | Rejec
     _, parts = grouped
     (task,) = parts["task"]
     facades = tuple(sorted(parts["facades"], key=order))
-    outcomes = assigned(task, facades)
-    assignments = tuple(one for one in outcomes if isinstance(one, Assignment))
-    rejections = [one for one in outcomes if isinstance(one, Rejection)]
-    return [stood(task, facades, assignments), *rejections]
-
-
-def stood(
-    task: BlockTask,
-    facades: tuple[FacadeRef, ...],
-    assignments: tuple[Assignment, ...],
-) -> Placed:
-    """Raise the buildings of a block."""
-    aspects = {texture_of(r): (r.seen.aspect, r.seen.aspect_sd) for r in facades}
-    built = block.block(task.block, task.fronts, assignments, aspects)
-    return Placed(task, facades, assignments, built)
+    names = {ref.seen.photo: ref.photo.name for ref in reversed(facades)}
+    keys = {ref.photo.name: ref.seen.photo for ref in facades}
+    candidates: dict[str, list[str]] = {}
+    for name, front_id in task.photos:
+        if name in keys:
+            candidates.setdefault(keys[name], []).append(front_id)
+    seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
+    settled = reconstruct.settle(task.block, task.fronts, candidates, seen)
+    rejections = [named(one, names[one.key]) for one in settled.rejections]
+    return [Placed(task, facades, settled), *rejections]
 
 
 def order(ref: FacadeRef) -> tuple[str, str, int]:
@@ -140,8 +137,11 @@ def only(one: Placed, done: set[tuple[str, int]]) -> Placed:
     """Raise the buildings anew if a facade they wear could not be finished."""
     if all(texture_of(ref) in done for ref in one.worn()):
         return one
-    kept = tuple(a for a in one.assignments if (a.photo, a.facade) in done)
-    return stood(one.task, one.facades, kept)
+    before = one.settled
+    kept = tuple(a for a in before.assignments if (a.photo, a.facade) in done)
+    seen = tuple(ref.seen for ref in one.facades)
+    anew = reconstruct.raised(one.key, before.fronts, kept, seen)
+    return replace(one, settled=replace(before, assignments=kept, block=anew))
 
 
 def contents(one: Placed, bench: Bench) -> list[str]:
@@ -165,7 +165,7 @@ def walls(building: Building) -> list[dict[str, Any]]:
 def columns(one: Placed) -> dict[str, list[str]]:
     """Write what a click on a building tells, a row a building."""
     fronts: dict[str, list[Any]] = {}
-    for front in one.task.fronts:
+    for front in one.settled.fronts:
         fronts.setdefault(f"{front.block}-{front.lot}", []).append(front)
     rows = [fronts.get(b.building_id, []) for b in one.block.buildings]
     return {
@@ -184,27 +184,9 @@ def address(front: Any) -> str:
 def model(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
     views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
-    pages = atlas.build(
-        {
-            (*wall.texture, wall.evidence): views[wall.texture]
-            for building in one.block.buildings
-            for wall in building.walls
-            if wall.texture is not None
-        }
+    data, whole = reconstruct.model(
+        one.block, views, table=columns(one), credit=one.task.credit
     )
-    meshes = [
-        (building.building_id, mesh.building(building, pages, number=number))
-        for number, building in enumerate(one.block.buildings)
-    ]
-    data = gltf.glb(
-        one.key,
-        meshes,
-        colours=picture.colours(pages),
-        evidence=picture.evidence_key(pages),
-        table=columns(one),
-        copyright=one.task.credit,
-    )
-    whole = mesh.joined([each for _, each in meshes])
     row = {
         "block": one.key,
         "glb": data,

@@ -3,7 +3,6 @@
 import json
 import time
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -17,11 +16,12 @@ from pipelines.manifest import Manifest
 from pipelines.models import Models
 from pipelines.options import CityOptions, part
 from pipelines.plan import Plan, plan
-from pipelines.progress import Voice, Watch
+from pipelines.progress import Watch
 from pipelines.runs import WriteTable
 from pipelines.stages import Bench
 from pipelines.store import Store
 from pipelines.versions import versions
+from pipelines.voice import Voice
 
 CURRENT: Final = "CURRENT"
 
@@ -65,7 +65,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     store, shard = Store(ours.city), part(ours.shard)
     found = manifest.read(store)
     for warning in found.warnings:
-        voice.say("warning", f"warning: {warning}", text=warning)
+        voice.say("warning", f"warning: {warning}", warning=warning)
     if found.mended:
         manifest.write(store, [row.cells for row in found.rows])
     models = Models(ours.models) if ours.models else Models()
@@ -157,16 +157,14 @@ def note(
     began: float,
     result: PipelineResult,
 ) -> None:
-    """Write when the run was and what its stages took: the only file with clock times."""
+    """Write when the run was and what it took: the only file with clock times."""
+    given = options.get_all_options(drop_default=True)
     told = {
         "run": run,
         "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
         "seconds": round(time.time() - began, 1),
         "stages": stages(result),
-        "options": {
-            k: str(v)
-            for k, v in sorted(options.get_all_options(drop_default=True).items())
-        },
+        "options": {name: str(value) for name, value in given.items()},
     }
     text = json.dumps(told, indent=1, sort_keys=True) + "\n"
     store.write_bytes(f"runs/{run}/run.json", text.encode())

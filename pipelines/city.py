@@ -1,8 +1,9 @@
-"""The pipeline of a city: photos to facades, facades to blocks, and what became of them.
+"""The pipeline of a city: from photos to facades, from facades to blocks.
 
     photos --Read--Segment--Matte--Rectify--> facades (numbers)
     facades + fronts --GroupByKey block--Assign--> cuboids, and which facades they wear
-    worn facades --Inpaint--> finished;  with the cuboids --GroupByKey block--Model--> GLB
+    worn facades --Inpaint--> finished
+    finished + cuboids --GroupByKey block--Model--> GLB
 
 Only references pass between steps. A facade that no wall wears is never inpainted.
 """

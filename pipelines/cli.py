@@ -15,7 +15,7 @@ from rich.console import Console
 
 if TYPE_CHECKING:
     from pipelines.build import Report
-    from pipelines.progress import Voice
+    from pipelines.voice import Voice
 
 FAILED: Final = 1
 TOO_MANY_REJECTIONS: Final = 3
@@ -104,6 +104,60 @@ def explain_command(
     typer.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
 
 
+INDEX_EXAMPLES = """
+Examples:
+
+  nostalgin index photos --catalogue list.csv -o city
+
+  nostalgin index photos -o city                      [dim]# file names tell the lots[/]
+
+  nostalgin index photos --catalogue list.csv -o city --block 993
+"""
+
+
+@app.command("index", epilog=INDEX_EXAMPLES)
+def index_command(
+    photos: Annotated[Path, typer.Argument(help="The folder that holds the photos.")],
+    city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
+    *,
+    catalogue: Annotated[
+        Path | None, typer.Option(help="CSV with block, lot, street, address, width.")
+    ] = None,
+    block: Annotated[
+        list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
+    ] = None,
+    credit: Annotated[str, typer.Option(help="Whom to name beside the photos.")] = "",
+    json_lines: JsonLines = False,
+) -> None:
+    """Write a city folder's manifest: which photo shows which fronts, in what order.
+
+    It is written as manifest.csv too, to be mended by hand; docs/manifest.md describes
+    its columns.
+    """
+    from pipelines.index import Nothing, index
+
+    voice = told(json_lines)
+    try:
+        made = index(photos, catalogue, city, blocks=block or (), credit=credit)
+    except Nothing as problem:
+        raise fail(str(problem)) from problem
+    for warning in made.warnings:
+        voice.say("warning", f"warning: {warning}", warning=warning)
+    for one in made.rejections:
+        words = f"rejected {one.key}: {one.reason}: {one.detail}"
+        voice.say("rejected", words, key=one.key, reason=one.reason, detail=one.detail)
+    voice.say(
+        "done",
+        f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
+        f"{made.without_photo} fronts without a photo: {city}/manifest.csv",
+        photos=made.photos,
+        fronts=made.fronts,
+        blocks=made.blocks,
+        fronts_without_photo=made.without_photo,
+        photos_without_front=list(made.without_front),
+    )
+
+
 BUILD_EXAMPLES = """
 Examples:
 
@@ -161,7 +215,7 @@ def build_command(
 
 def told(json_lines: bool) -> "Voice":  # noqa: FBT001 - as the option gives it
     """Choose how to speak: to people on standard error, or JSON on standard output."""
-    from pipelines.progress import Voice
+    from pipelines.voice import Voice
 
     return Voice(errors, machine=json_lines)
 

@@ -19,8 +19,7 @@ FACADES = (
     (0, 159, 230),
 )
 OCCLUDER = (0, 94, 213)
-HORIZONTAL = (0, 94, 213)
-VERTICAL = (178, 114, 0)
+VERTICAL = (60, 60, 60)
 NEITHER = (150, 150, 150)
 EVIDENCE = {
     evidence.NOTHING: (0, 0, 0),
@@ -78,15 +77,10 @@ def fits(lines: Lines, vanishing_point: np.ndarray) -> np.ndarray:
     return np.abs(cross) <= limit * np.maximum(norm, 1e-12)
 
 
-def with_lines(picture: Colour, lines: Lines, points: np.ndarray) -> Colour:
-    """Draw lines in the colour of the vanishing point that they run to."""
+def stroked(picture: Colour, lines: Lines, colour: tuple[int, int, int]) -> Colour:
+    """Draw lines in one colour."""
     out = picture.copy()
-    colours = (HORIZONTAL, VERTICAL)
-    owner = np.full(len(lines), -1)
-    for number, point in enumerate(points[: len(colours)]):
-        owner[fits(lines, point) & (owner < 0)] = number
-    for line, number in zip(np.rint(lines).astype(int), owner, strict=True):
-        colour = colours[number] if number >= 0 else NEITHER
+    for line in np.rint(lines).astype(int):
         cv2.line(out, line[:2].tolist(), line[2:].tolist(), colour, 1, cv2.LINE_AA)
     return out
 

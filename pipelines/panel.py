@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from nostalgin_core.arrays import Lines
+from nostalgin_core.arrays import Corners, Lines
 from nostalgin_core.reconstruct import Reconstruction
 from nostalgin_core.records import Elevation, Matted, Photo
 from pipelines import draw
@@ -12,6 +12,7 @@ from pipelines.draw import Colour
 HEIGHT_PX = 520  # of one tile: a tax photograph keeps its windows
 CAPTION_PX = 26
 GAP_PX = 8
+WIDTH_PX = 2400  # of a row
 WHITE = 255
 
 Tile = tuple[str, Colour]
@@ -32,7 +33,7 @@ def panel(made: Reconstruction, lines: Lines) -> Colour:
     if made.rectified:
         tiles.append(("lines", line_picture(made.photo, made.rectified, lines)))
     tiles += finals(made.rectified, made.elevations)
-    return beside([captioned(*tile) for tile in tiles])
+    return rows([captioned(*tile) for tile in tiles])
 
 
 def segmented(
@@ -65,10 +66,31 @@ def cut_outs(photo: Photo, matted: Matted) -> list[Tile]:
 def line_picture(
     photo: Photo, rectified: tuple[Elevation, ...], lines: Lines
 ) -> Colour:
-    """Draw the lines, coloured by the vanishing points of the widest facade."""
-    widest = max(rectified, key=lambda one: one.image.size)
-    pale = draw.in_colour((photo.image // 2 + 127).astype(np.uint8))
-    return draw.with_lines(pale, lines, widest.vanishing_points)
+    """Draw each line in the colour of the vanishing point that it runs to.
+
+    Each facade's horizontal point has the facade's colour, the vertical point is dark,
+    and what runs to neither, or lies on no facade, is pale.
+    """
+    picture = draw.in_colour((photo.image // 3 + 170).astype(np.uint8))
+    picture = draw.stroked(picture, lines, draw.NEITHER)
+    for view in rectified:
+        on = lines[on_quad(lines, view.quad)]
+        across, up = view.vanishing_points[:2]
+        upright = draw.fits(on, up)
+        picture = draw.stroked(picture, on[upright], draw.VERTICAL)
+        level = draw.fits(on, across) & ~upright
+        picture = draw.stroked(picture, on[level], draw.facade_colour(view.facade))
+    return picture
+
+
+def on_quad(lines: Lines, quad: Corners) -> np.ndarray:
+    """Tell which lines have their middle inside a quadrangle."""
+    outline = quad.astype(np.float32)
+    middles = (lines[:, :2] + lines[:, 2:]) / 2
+    return np.array(
+        [cv2.pointPolygonTest(outline, (x, y), False) >= 0 for x, y in middles],  # noqa: FBT003
+        dtype=bool,
+    )
 
 
 def finals(
@@ -95,6 +117,25 @@ def captioned(caption: str, picture: Colour) -> Colour:
     font = cv2.FONT_HERSHEY_SIMPLEX
     cv2.putText(foot, caption, (2, 18), font, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
     return np.vstack([small, foot])
+
+
+def rows(tiles: list[Colour]) -> Colour:
+    """Set tiles in rows, each as wide as the panel allows."""
+    lines: list[list[Colour]] = [[]]
+    for tile in tiles:
+        width = sum(one.shape[1] + GAP_PX for one in lines[-1])
+        if lines[-1] and width + tile.shape[1] > WIDTH_PX:
+            lines.append([])
+        lines[-1].append(tile)
+    strips = [beside(line) for line in lines]
+    widest = max(strip.shape[1] for strip in strips)
+    return np.vstack([widened(strip, widest) for strip in strips])
+
+
+def widened(strip: Colour, width: int) -> Colour:
+    """Add white on the right."""
+    missing = width - strip.shape[1]
+    return np.pad(strip, ((0, 0), (0, missing), (0, 0)), constant_values=WHITE)
 
 
 def beside(tiles: list[Colour]) -> Colour:

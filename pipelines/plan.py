@@ -42,11 +42,11 @@ def plan(rows: Sequence[Row], *, city: str, shard: tuple[int, int] = (1, 1)) -> 
 
     A photo without a front is rejected: there is no place for it.
     """
-    mine = [r for r in rows if r.front is not None and falls_to(r.front.block, shard)]
     blocks = defaultdict(list)
     photos: dict[Name, list[str]] = defaultdict(list)
-    for row in mine:
-        assert row.front is not None
+    for row in rows:
+        if row.front is None or not falls_to(row.front.block, shard):
+            continue
         blocks[row.front.block].append(row)
         if row.photo:
             photos[rooted(row.root, city), row.photo].append(row.front.block)
@@ -70,8 +70,8 @@ def block_task(block: str, rows: Sequence[Row]) -> BlockTask:
         fronts.values(), key=lambda one: (one.ring, one.rank, one.front_id)
     )
     pairs = {(r.photo, r.front.front_id) for r in rows if r.photo and r.front}
-    credits = sorted({row.credit for row in rows if row.credit})
-    return BlockTask(block, tuple(ordered), tuple(sorted(pairs)), "; ".join(credits))
+    named = sorted({row.credit for row in rows if row.credit})
+    return BlockTask(block, tuple(ordered), tuple(sorted(pairs)), "; ".join(named))
 
 
 def homeless(row: Row) -> Rejection:

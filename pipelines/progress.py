@@ -4,7 +4,6 @@ A stage has done as many photos as it has artifacts, wherever its workers are: s
 watcher looks into the store, and asks no runner.
 """
 
-import json
 import threading
 import time
 from collections.abc import Callable
@@ -13,29 +12,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self
 
-from rich.console import Console
-
 from pipelines.store import ARTIFACTS, Store
 from pipelines.versions import Versions
+from pipelines.voice import Voice
 
 WATCHED: Final = ("segment", "matte", "rectify", "inpaint", "block")
 EVERY_S: Final = 2.0  # a photo takes seconds
 SAY_EVERY_S: Final = 30.0  # without a terminal every line stays
-
-
-@dataclass
-class Voice:
-    """Tells people in lines, or machines in JSON, a line an event."""
-
-    console: Console
-    machine: bool = False
-
-    def say(self, event: str, text: str, **facts: Any) -> None:
-        """Tell one event."""
-        if self.machine:
-            print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
-        else:
-            self.console.print(text, markup=False, highlight=False)
 
 
 @dataclass

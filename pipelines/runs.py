@@ -107,11 +107,11 @@ class BuildingRows:
         """Write a row a building."""
         one = done.placed
         refs = {texture_of(ref): ref for ref in one.facades}
-        scores = {(a.photo, a.facade): a.score for a in one.assignments}
+        scores = {(a.photo, a.facade): a.score for a in one.settled.assignments}
         for building in one.block.buildings:
             own = [
                 front
-                for front in one.task.fronts
+                for front in one.settled.fronts
                 if f"{front.block}-{front.lot}" == building.building_id
             ]
             worn = [w.texture for w in building.walls if w.texture is not None]

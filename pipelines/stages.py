@@ -13,6 +13,7 @@ from typing import Any
 import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
+from apache_beam.typehints.decorators import no_annotations
 
 from nostalgin_core import inpaint, matte, photo, quantise, rectify, segment
 from nostalgin_core.reconstruct import rounded
@@ -84,6 +85,7 @@ class Bench:
 class Read(beam.PTransform):
     """Photos by name in, photos by content out; a missing file is rejected."""
 
+    @no_annotations
     def expand(self, photos: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         return photos | Attempt(read, stage="photo")
@@ -105,6 +107,7 @@ class Segment(beam.PTransform):
 
     bench: Bench
 
+    @no_annotations
     def expand(self, photos: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         network = Once(self.bench.models, "segment")
@@ -118,6 +121,7 @@ class Matte(beam.PTransform):
 
     bench: Bench
 
+    @no_annotations
     def expand(self, photos: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         return photos | Attempt(Work(matted, self.bench), stage="matte")
@@ -129,6 +133,7 @@ class Rectify(beam.PTransform):
 
     bench: Bench
 
+    @no_annotations
     def expand(self, photos: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         return photos | Attempt(Work(rectified, self.bench), stage="rectify")
@@ -140,6 +145,7 @@ class Inpaint(beam.PTransform):
 
     bench: Bench
 
+    @no_annotations
     def expand(self, facades: pvalue.PCollection) -> Outcome:
         """Wire the stage."""
         network = Once(self.bench.models, "inpaint")
@@ -237,7 +243,9 @@ def needed(picture: Photo | Rejection) -> Photo:
         ValueError: if the file has changed since.
     """
     if isinstance(picture, Rejection):
-        raise ValueError(f"{picture.key} changed during the run: {picture.reason}")
+        raise ValueError(  # noqa: TRY004 - its type is not what is wrong
+            f"{picture.key} changed during the run: {picture.reason}"
+        )
     return picture
 
 

@@ -44,7 +44,7 @@ VERDICT = [
 ]
 
 
-def column(kind: Any) -> pa.DataType:
+def column(kind: Any) -> pa.DataType:  # noqa: PLR0911 - one for each kind
     """Give the column type of a field's annotation."""
     if kind in IMAGES:
         return pa.binary()

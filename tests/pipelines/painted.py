@@ -1,0 +1,104 @@
+"""Small photos of two fronts with a car before them, and networks that find these."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import onnx
+from onnx import TensorProto, helper, numpy_helper
+
+SIZE = (640, 480)  # h, w
+LEFT = np.array([[40, 80], [230, 140], [230, 560], [40, 600]], np.float32)
+RIGHT = np.array([[250, 140], [440, 100], [440, 590], [250, 560]], np.float32)
+CAR = (80, 524, 200, 600)  # x0, y0, x1, y1
+
+
+def photo(seed: int = 0, *, suffix: str = ".png") -> bytes:
+    """Paint two fronts in perspective with windows, and a car; encode them."""
+    rng = np.random.default_rng(seed)
+    image = np.full(SIZE, 225, np.uint8)
+    image[560:] = 120
+    for quad in (LEFT, RIGHT):
+        across, up = 4 + int(rng.integers(3)), 5 + int(rng.integers(3))
+        wall = np.full((400, 200), 150 + rng.integers(30), np.uint8)
+        for x in np.linspace(16, 200, across, endpoint=False):
+            for y in np.linspace(20, 400, up, endpoint=False):
+                wall[int(y) : int(y) + 40, int(x) : int(x) + 20] = rng.integers(20, 70)
+        corners = np.array([[0, 0], [200, 0], [200, 400], [0, 400]], np.float32)
+        matrix = cv2.getPerspectiveTransform(corners, quad)
+        warped = cv2.warpPerspective(wall, matrix, SIZE[::-1])
+        inside = cv2.warpPerspective(np.ones_like(wall), matrix, SIZE[::-1]) > 0
+        image[inside] = warped[inside]
+    x0, y0, x1, y1 = CAR
+    image[y0:y1, x0:x1] = 30
+    image = np.clip(image + rng.normal(0, 3, SIZE), 0, 255).astype(np.uint8)
+    return cv2.imencode(suffix, image)[1].tobytes()
+
+
+def detections() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """List boxes as shares of the picture, labels, scores and masks."""
+    boxes, masks = [], []
+    for quad in (LEFT, RIGHT):
+        low, high = quad.min(axis=0), quad.max(axis=0)
+        boxes.append([*low, *high])
+        inner = np.rint((quad - low) / (high - low) * 27).astype(np.int32)
+        masks.append(cv2.fillPoly(np.zeros((28, 28), np.float32), [inner], 0.98))
+    boxes.append(list(CAR))
+    masks.append(np.full((28, 28), 0.95, np.float32))
+    shares = np.array(boxes, np.float32) / np.array([*SIZE[::-1]] * 2, np.float32)
+    labels = np.array([1, 1, 3], np.int64)
+    scores = np.array([0.95, 0.9, 0.8], np.float32)
+    return shares, labels, scores, np.array(masks)
+
+
+def segment_network() -> bytes:
+    """Make a network that sees the same three things in every picture."""
+    shares, labels, scores, masks = detections()
+    constants = {
+        "shares": shares,
+        "labels": labels,
+        "scores": scores,
+        "masks": masks,
+        "order": np.array([3, 2, 3, 2], np.int64),  # w, h, w, h
+    }
+    nodes = [
+        helper.make_node("Shape", ["image"], ["shape"]),
+        helper.make_node("Gather", ["shape", "order"], ["extent"]),
+        helper.make_node("Cast", ["extent"], ["extent32"], to=TensorProto.FLOAT),
+        helper.make_node("Mul", ["shares", "extent32"], ["boxes"]),
+    ]
+    nodes += [
+        helper.make_node("Identity", [name], [f"{name}_out"])
+        for name in ("labels", "scores", "masks")
+    ]
+    kinds = {"boxes": 1, "labels_out": 7, "scores_out": 1, "masks_out": 1}
+    return network(nodes, constants, ["image"], kinds)
+
+
+def network(
+    nodes: list, constants: dict[str, np.ndarray], inputs: list[str], outputs: dict
+) -> bytes:
+    """Put nodes into an ONNX file with one-channel pictures as input."""
+    shape = [1, 1, "h", "w"]
+    graph = helper.make_graph(
+        nodes,
+        "painted",
+        [helper.make_tensor_value_info(n, TensorProto.FLOAT, shape) for n in inputs],
+        [helper.make_tensor_value_info(n, k, None) for n, k in outputs.items()],
+        [numpy_helper.from_array(value, name) for name, value in constants.items()],
+    )
+    opset = [helper.make_opsetid("", 17)]
+    return helper.make_model(graph, opset_imports=opset, ir_version=9).SerializeToString()
+
+
+def write_models(folder: Path, **networks: bytes) -> Path:
+    """Write networks with their lock."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = {}
+    for name, data in networks.items():
+        (folder / f"{name}.onnx").write_bytes(data)
+        lock[f"{name}.onnx"] = hashlib.sha256(data).hexdigest()
+    (folder / "models.lock").write_text(json.dumps(lock))
+    return folder
