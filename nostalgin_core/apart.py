@@ -28,7 +28,9 @@ def apart(footprints: Sequence[Corners], turns: Sequence[int]) -> list[Corners]:
         pair = _worst(shapes)
         if pair is None:
             break
-        a, b = sorted(pair, key=lambda index: (turns[index], -_depth(kept[index]), index))
+        a, b = sorted(
+            pair, key=lambda index: (turns[index], -_depth(kept[index]), index)
+        )
         for index, other in ((a, b), (b, a)):
             cut = _cut(kept[index], shapes[other], turns[index])
             if cut is not None:

@@ -140,7 +140,12 @@ def layout(
                 corners, height = shelves(outer, width=width)
                 if height <= min(width * 5 // 4, limit_px):
                     boxes = [
-                        Box(x + GUTTER_PX, y + GUTTER_PX, x + GUTTER_PX + w, y + GUTTER_PX + h)
+                        Box(
+                            x + GUTTER_PX,
+                            y + GUTTER_PX,
+                            x + GUTTER_PX + w,
+                            y + GUTTER_PX + h,
+                        )
                         for (x, y), (h, w) in zip(corners, inner, strict=True)
                     ]
                     return boxes, (-(-height // 64) * 64, width)

@@ -12,14 +12,17 @@ from statistics import median
 import numpy as np
 from jaxtyping import Float
 
+from nostalgin_core.address import house_numbers
 from nostalgin_core.arrays import Points
-from nostalgin_core.chain import Footprint, Ring, chain, first_number
-from nostalgin_core.cuboid import ASSUMED_M, Shown, cuboid
+from nostalgin_core.chain import Footprint, Ring, chain
+from nostalgin_core.cuboid import Shown, cuboid
+from nostalgin_core.outline import nominal_headings
 from nostalgin_core.records import Assignment, Block, Building, Front
 
 STREET_M = 18.3  # 60 feet from front to front: a side street of 1811
 AVENUE_M = 30.5  # 100 feet
 FALLBACK_GAP_M = 24.0
+NEIGHBOURS = 4
 
 Aspects = Mapping[tuple[str, int], tuple[float, float]]  # aspect and its spread
 
@@ -50,8 +53,7 @@ def block(
     fronts = with_seen_widths(fronts, shown)
     numbers = sorted({front.ring for front in fronts})
     rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
-    cutting = cutting_streets(rings)
-    placed = laid_out([(chain(ring, free_sides=_free(ring, cutting)), ring) for ring in rings])
+    placed = laid_out(list(zip(chained(rings), rings, strict=True)))
     footprints = [footprint for ring in placed for footprint in ring.footprints]
     return Block(
         block=name,
@@ -81,20 +83,24 @@ def with_seen_widths(
     Both fronts of a building are equally high, so that w2 = w1 a2 / a1: two facades of
     one building specify its cuboid.
     """
-    best = {front_id: max(some, key=lambda one: one.score) for front_id, some in shown.items()}
+    best = {
+        front_id: max(some, key=lambda one: one.score)
+        for front_id, some in shown.items()
+    }
     known = {
         (front.block, front.lot): front
         for front in fronts
         if not front.width_assumed and front.front_id in best
     }
-    widened = []
-    for front in fronts:
+
+    def widened(front: Front) -> Front:
         other = known.get((front.block, front.lot))
-        if front.width_assumed and other is not None and front.front_id in best:
-            ratio = best[front.front_id].aspect / best[other.front_id].aspect
-            front = replace(front, width_m=other.width_m * ratio)
-        widened.append(front)
-    return widened
+        if not front.width_assumed or other is None or front.front_id not in best:
+            return front
+        ratio = best[front.front_id].aspect / best[other.front_id].aspect
+        return replace(front, width_m=other.width_m * ratio)
+
+    return [widened(front) for front in fronts]
 
 
 def raised(
@@ -103,19 +109,26 @@ def raised(
     *,
     copied: bool = False,
 ) -> list[Building]:
-    """Raise all buildings; those without a height get the median of their neighbours."""
+    """Raise all buildings; those without a height get their neighbours' median."""
     first = [cuboid(footprint, shown, copied=copied) for footprint in footprints]
-    seen = [(i, building.height_m) for i, building in enumerate(first) if not building.assumed]
-    buildings = []
-    for index, building in enumerate(first):
-        if building.assumed and seen:
-            count = len(first)
-            near = sorted(
-                seen, key=lambda one: min((one[0] - index) % count, (index - one[0]) % count)
-            )[:4]
-            building = replace(building, height_m=float(median(m for _, m in near)))
-        buildings.append(building)
-    return buildings
+    seen = [
+        (i, building.height_m)
+        for i, building in enumerate(first)
+        if not building.assumed
+    ]
+
+    def neighbourly(index: int) -> float:
+        count = len(first)
+        near = sorted(
+            seen,
+            key=lambda one: min((one[0] - index) % count, (index - one[0]) % count),
+        )
+        return float(median(height_m for _, height_m in near[:NEIGHBOURS]))
+
+    return [
+        replace(one, height_m=neighbourly(index)) if one.assumed and seen else one
+        for index, one in enumerate(first)
+    ]
 
 
 def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
@@ -128,19 +141,46 @@ def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
     for index, a in enumerate(rings):
         for b in rings[index + 1 :]:
             for street in {front.street for front in a} & {front.street for front in b}:
-                if not parities(a, street) & parities(b, street):
+                here, there = parities(a, street), parities(b, street)
+                if here and there and not here & there:
                     cutting.add(street)
     return frozenset(cutting)
 
 
 def parities(fronts: Sequence[Front], street: str) -> set[int]:
     """Tell whether the house numbers on a street are odd (1) or even (0)."""
-    numbers = [first_number(front.address) for front in fronts if front.street == street]
-    return {number % 2 for number in numbers if number is not None}
+    numbers = [
+        house_numbers(front.address) for front in fronts if front.street == street
+    ]
+    return {number[0] % 2 for number in numbers if number is not None}
 
 
-def _free(fronts: Sequence[Front], cutting: frozenset[str]) -> frozenset[int]:
-    return frozenset(front.side for front in fronts if front.street in cutting)
+def chained(rings: Sequence[Sequence[Front]]) -> list[Ring]:
+    """Place each ring on its own, both sides of a cutting street leaning alike.
+
+    Each ring first says by itself how its side on such a street leans; all then take
+    the mean, so that the street is straight and the grid beyond it parallel.
+    """
+    cutting = cutting_streets(rings)
+    free = [
+        {front.side: front.street for front in ring if front.street in cutting}
+        for ring in rings
+    ]
+    alone = [
+        chain(ring, leaning=dict.fromkeys(sides))
+        for ring, sides in zip(rings, free, strict=True)
+    ]
+    leans: dict[str, list[float]] = {street: [] for street in cutting}
+    for ring, sides in zip(alone, free, strict=True):
+        nominal = nominal_headings(max(len(ring.headings_rad), 4))
+        for side, street in sides.items():
+            leans[street].append(ring.headings_rad[side] - float(nominal[side]))
+    return [
+        chain(
+            ring, leaning={side: float(np.mean(leans[s])) for side, s in sides.items()}
+        )
+        for ring, sides in zip(rings, free, strict=True)
+    ]
 
 
 def laid_out(rings: Sequence[tuple[Ring, Sequence[Front]]]) -> list[Ring]:
@@ -188,7 +228,7 @@ def sides(ring: Ring, fronts: Sequence[Front]) -> list[Side]:
 
 
 def face(ring: Ring, side: Side, opposite: Side, *, gap_m: float) -> Ring:
-    """Turn and move a ring so that its side faces another over a gap, middles aligned."""
+    """Turn and move a ring so that a side faces another over a gap, middles aligned."""
     mine, yours = side.end_m - side.start_m, opposite.end_m - opposite.start_m
     turn = np.arctan2(*yours[::-1]) + np.pi - np.arctan2(*mine[::-1])
     outward = np.array([yours[1], -yours[0]]) / np.hypot(*yours)

@@ -21,7 +21,8 @@ between; in a rectangular ring they are all square to the street, and every foot
 a rectangle. A ring of one side is a straight row, a ring of two sides an open corner.
 """
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,6 +30,7 @@ from jaxtyping import Float
 from scipy.optimize import brentq
 
 from nostalgin_core import outline
+from nostalgin_core.address import house_numbers
 from nostalgin_core.apart import apart
 from nostalgin_core.arrays import Corners, Points
 from nostalgin_core.records import Front
@@ -38,6 +40,7 @@ KNOWN_SD, ASSUMED_SD = 0.03, 0.4  # relative, of a width
 DEPTH_SD = 0.25  # of a width that is another front's depth
 GROWTH = 1.35  # an assumed width grows by no more: beyond, a gap is left open
 CLOSED_GAP = 0.03  # of a side's length
+UNKNOWN_JUMP = 3  # next doors are 2 apart: rather there than between those
 
 Vector = Float[np.ndarray, " 2"]
 
@@ -51,7 +54,7 @@ class Piece:
     width_m: float
     width_sd: float  # relative
     depth_m: float
-    number: int | None  # house number, to see where lots are missing
+    numbers: tuple[int, int] | None  # house numbers, to see where lots are missing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,12 +77,15 @@ class Ring:
     closed: bool
 
 
-def chain(fronts: Sequence[Front], *, free_sides: frozenset[int] = frozenset()) -> Ring:
+def chain(
+    fronts: Sequence[Front], *, leaning: Mapping[int, float | None] | None = None
+) -> Ring:
     """Place the fronts of one ring.
 
-    Sides of four-sided rings meet at right angles, but for `free_sides` (a street that
-    cuts the grid, as Broadway), whose heading follows from the others. Rings of three
-    sides, or five and more, are free throughout.
+    Sides of four-sided rings meet at right angles, but for those that are `leaning` (on
+    a street that cuts the grid, as Broadway): by so many radians from the right angle,
+    or, where that is None, by what the other sides' lengths say. Rings of three sides,
+    or five and more, are free throughout.
 
     Raises:
         ValueError: if there are no fronts.
@@ -89,12 +95,14 @@ def chain(fronts: Sequence[Front], *, free_sides: frozenset[int] = frozenset()) 
     sides = with_corners(pieces(fronts))
     closed = len(sides) > 2
     if closed:
-        lengths_m, headings = outline.close(measured(sides, free_sides))
+        lengths_m, headings = outline.close(measured(sides, leaning or {}))
     else:
         lengths_m = np.array([sum(p.width_m for p in side) for side in sides])
         headings = outline.nominal_headings(4)[: len(sides)]
     starts_m = outline.corners(lengths_m, headings)
-    spans = [fitted(side, length) for side, length in zip(sides, lengths_m, strict=True)]
+    spans = [
+        fitted(side, length) for side, length in zip(sides, lengths_m, strict=True)
+    ]
     footprints = _walked(sides, spans, starts_m, headings, closed=closed)
     end_m = starts_m[-1] + lengths_m[-1] * _ahead(headings[-1])
     return Ring(
@@ -118,16 +126,10 @@ def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
                 width_m=front.width_m,
                 width_sd=ASSUMED_SD if front.width_assumed else KNOWN_SD,
                 depth_m=front.depth_m or DEPTH_M,
-                number=first_number(front.address),
+                numbers=house_numbers(front.address),
             )
         )
     return sides
-
-
-def first_number(address: str) -> int | None:
-    """Read the house number an address starts with."""
-    digits = address.strip().split("-")[0].split(" ")[0]
-    return int(digits) if digits.isdigit() else None
 
 
 def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
@@ -162,22 +164,23 @@ def _round_the_corner(piece: Piece) -> Piece:
         width_m=piece.depth_m,
         width_sd=DEPTH_SD,
         depth_m=piece.width_m,
-        number=None,
+        numbers=None,
     )
 
 
 def measured(
-    sides: Sequence[Sequence[Piece]], free_sides: frozenset[int]
+    sides: Sequence[Sequence[Piece]], leaning: Mapping[int, float | None]
 ) -> list[outline.Measured]:
     """Sum each side's widths, and their variances."""
     totals = [sum(piece.width_m for piece in side) for side in sides]
     mean_m = sum(totals) / sum(total > 0 for total in totals)
-    free = frozenset(range(len(sides))) if len(sides) != 4 else free_sides
+    free = {side for side in range(len(sides)) if len(sides) != 4 or side in leaning}
+    free -= {side for side, lean in leaning.items() if lean is not None}
     return [
         outline.Measured(
             length_m=total or mean_m,
             squeeze_sd=_relative_sd(side) if side else outline.UNKNOWN_SD,
-            heading_rad=float(heading),
+            heading_rad=float(heading) + (leaning.get(index) or 0.0),
             heading_sd_rad=outline.FREE_SD_RAD if index in free else 0.0,
         )
         for index, (side, total, heading) in enumerate(
@@ -222,8 +225,10 @@ def fitted(side: Sequence[Piece], length_m: float) -> list[tuple[float, float]]:
 def _widest_jump(side: Sequence[Piece]) -> int:
     """Tell after which piece lots are most likely missing."""
     jumps = [
-        abs(b.number - a.number) if a.number and b.number else 0
-        for a, b in zip(side[:-1], side[1:], strict=True)
+        max(b.numbers[0] - a.numbers[1], a.numbers[0] - b.numbers[1])
+        if a.numbers and b.numbers
+        else UNKNOWN_JUMP
+        for a, b in itertools.pairwise(side)
     ]
     return int(np.argmax(jumps)) if jumps else 0
 
@@ -245,7 +250,6 @@ def _walked(
     A piece that continues a building from round the corner is left out: that building
     was placed before, or will be when the walk comes to its first side.
     """
-    count = len(sides)
     placed: list[Footprint] = []
     for here, side in enumerate(sides):
         for index, piece in enumerate(side):
@@ -263,6 +267,8 @@ def _walked(
                 points += [points[1] + back[1], points[0] + back[0]]
             elif len(run) == 2:
                 points.append(points[0] + points[2] - points[1])
+            elif len(run) == 3 and sides[end][last].front_id is None:
+                points[3] = _as_deep(points)
             fronts = tuple(sides[s][i].front_id for s, i in run)
             placed.append(_footprint(piece.building_id, points, fronts))
     if not placed:  # one building is the whole block
@@ -270,6 +276,18 @@ def _walked(
         points = [*starts_m, (starts_m[-1] + starts_m[0]) / 2]
         placed.append(_footprint(sides[0][0].building_id, points, fronts))
     return placed
+
+
+def _as_deep(points: Sequence[Vector]) -> Vector:
+    """Draw the unseen end of a building round two corners back to its other end.
+
+    So its inner wall runs along the street between, and clears its neighbours.
+    """
+    a, b, c, d = points
+    along = (c - b) / np.hypot(*(c - b))
+    inward = np.array([-along[1], along[0]])
+    deep, reach = float((a - b) @ inward), float((d - c) @ inward)
+    return c + min(1.0, deep / max(reach, 1e-9)) * (d - c)
 
 
 def _run(

@@ -39,7 +39,9 @@ def height(footprint: Footprint, shown: Mapping[str, Sequence[Shown]]) -> float 
     None where no elevation gives a height between a stall's and a tower's.
     """
     heights_m, weights = [], []
-    for width_m, front_id in zip(edge_lengths(footprint), footprint.front_ids, strict=True):
+    for width_m, front_id in zip(
+        edge_lengths(footprint), footprint.front_ids, strict=True
+    ):
         for one in shown.get(front_id or "", ()):
             candidate = width_m / one.aspect
             if LOWEST_M <= candidate <= HIGHEST_M:

@@ -15,15 +15,16 @@ def table(
     fronts: Sequence[Front],
     assignments: Sequence[Assignment],
     *,
-    credits: Mapping[str, str] | None = None,
+    credit_of: Mapping[str, str] | None = None,
 ) -> Facts:
     """List what is known of each building, as columns.
 
     `address` joins the building's addresses, each with its street; `photo` is the key
     of the photograph that it wears, empty where there is none; `photos` are the keys of
-    all photographs that show it, joined by spaces; `credit` is that of its photograph.
+    all photographs that show it, joined by spaces; `credit` is that of its
+    photograph, by the photo's key.
     """
-    credits = credits or {}
+    credit_of = credit_of or {}
     by_id = {front.front_id: front for front in fronts}
     own = [
         [by_id[wall.front_id] for wall in building.walls if wall.front_id in by_id]
@@ -37,7 +38,9 @@ def table(
     return {
         "building_id": [building.building_id for building in block.buildings],
         "block": [block.block] * len(block.buildings),
-        "lot": [one.building_id.removeprefix(f"{block.block}-") for one in block.buildings],
+        "lot": [
+            one.building_id.removeprefix(f"{block.block}-") for one in block.buildings
+        ],
         "address": [address(some) for some in own],
         "assumed": np.array([one.assumed for one in block.buildings], np.uint8),
         "height_m": np.array([one.height_m for one in block.buildings], np.float32),
@@ -47,7 +50,9 @@ def table(
             [texture[1] if texture else -1 for texture in worn], np.int32
         ),
         "photos": [" ".join(some) for some in shows],
-        "credit": [credits.get(texture[0], "") if texture else "" for texture in worn],
+        "credit": [
+            credit_of.get(texture[0], "") if texture else "" for texture in worn
+        ],
     }
 
 

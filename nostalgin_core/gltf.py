@@ -47,7 +47,7 @@ def glb(
     colours: Picture,
     evidence: Picture,
     table: Mapping[str, Column],
-    copyright: str = "",
+    copyright: str = "",  # noqa: A002 - glTF's word
     extras: Mapping[str, Any] | None = None,
 ) -> bytes:
     """Write one block as a binary glTF 2.0 file, the same bytes for the same input.
@@ -61,11 +61,14 @@ def glb(
     for column, values in table.items():
         if len(values) != len(buildings):
             raise ValueError(
-                f"column {column!r} has {len(values)} rows for {len(buildings)} buildings"
+                f"column {column!r}: {len(values)} rows, {len(buildings)} buildings"
             )
     buffer = Buffer()
     meshes = [_mesh(buffer, node, mesh, len(buildings)) for node, mesh in buildings]
-    images = [_image(buffer, colours, VARIANTS[0]), _image(buffer, evidence, VARIANTS[1])]
+    images = [
+        _image(buffer, colours, VARIANTS[0]),
+        _image(buffer, evidence, VARIANTS[1]),
+    ]
     webp = colours.mime == "image/webp"
     extensions = {
         "KHR_materials_variants": {"variants": [{"name": name} for name in VARIANTS]},
@@ -81,7 +84,9 @@ def glb(
         "scenes": [{"name": name, "nodes": [0]}],
         "nodes": _nodes(name, [node for node, _ in buildings]),
         "meshes": meshes,
-        "materials": [_material(variant, index) for index, variant in enumerate(VARIANTS)],
+        "materials": [
+            _material(variant, index) for index, variant in enumerate(VARIANTS)
+        ],
         "textures": [_texture(0, webp=webp), _texture(1, webp=False)],
         "samplers": [
             _sampler(LINEAR, LINEAR_MIPMAP_LINEAR),
@@ -94,10 +99,10 @@ def glb(
     return _container(document, bytes(buffer.data))
 
 
-def _asset(copyright: str, extras: Mapping[str, Any]) -> Json:
+def _asset(rights: str, extras: Mapping[str, Any]) -> Json:
     asset: Json = {"version": "2.0", "generator": "nostalgin"}
-    if copyright:
-        asset["copyright"] = copyright
+    if rights:
+        asset["copyright"] = rights
     if extras:
         asset["extras"] = dict(extras)
     return asset
@@ -120,7 +125,9 @@ def _mesh(buffer: Buffer, name: str, mesh: Mesh, buildings: int) -> Json:
             "POSITION": _vertices(
                 buffer, np.column_stack([east, up, -north]), "VEC3", bounds=True
             ),
-            "NORMAL": _vertices(buffer, np.column_stack([across, rise, -along]), "VEC3"),
+            "NORMAL": _vertices(
+                buffer, np.column_stack([across, rise, -along]), "VEC3"
+            ),
             "TEXCOORD_0": _vertices(buffer, mesh.uvs, "VEC2"),
             "_FEATURE_ID_0": _vertices(buffer, mesh.features, "SCALAR"),
         },
@@ -220,6 +227,7 @@ def _material(name: str, texture: int) -> Json:
         "name": name,
         "alphaMode": "MASK",
         "alphaCutoff": 0.5,
+        "doubleSided": True,  # a parapet is seen from behind too
         "pbrMetallicRoughness": {
             "baseColorTexture": {"index": texture},
             "metallicFactor": 0.0,  # left out it means 1, and facades turn black

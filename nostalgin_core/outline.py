@@ -59,9 +59,9 @@ def close(sides: Sequence[Measured]) -> tuple[Numbers, Numbers]:
         length_m = measured_m * np.exp(growth)
         ahead = np.column_stack([np.cos(bearing + turn), np.sin(bearing + turn)])
         aside = np.column_stack([-ahead[:, 1], ahead[:, 0]])
-        slope = (length_m[:, None] * np.vstack([ahead, aside]).reshape(2, -1, 2)).reshape(
-            -1, 2
-        )  # of the two conditions, by each unknown
+        slope = (
+            length_m[:, None] * np.vstack([ahead, aside]).reshape(2, -1, 2)
+        ).reshape(-1, 2)  # of the two conditions, by each unknown
         gap = length_m @ ahead
         now = np.concatenate([growth, turn])
         normal = slope.T @ (variance[:, None] * slope)
@@ -73,9 +73,7 @@ def close(sides: Sequence[Measured]) -> tuple[Numbers, Numbers]:
     return measured_m * np.exp(growth), bearing + turn
 
 
-def corners(
-    length_m: Numbers, heading_rad: Numbers
-) -> Float[np.ndarray, "n 2"]:
+def corners(length_m: Numbers, heading_rad: Numbers) -> Float[np.ndarray, "n 2"]:
     """Walk the sides from the origin; return where each one starts."""
     steps = length_m[:, None] * np.column_stack(
         [np.cos(heading_rad), np.sin(heading_rad)]

@@ -42,9 +42,7 @@ class Tile:
 def ecef_from_enu(place: Place) -> Matrix4:
     """Carry east-north-up metres at a place to the earth-centred frame EPSG:4978."""
     to_ecef = Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
-    origin = to_ecef.transform(
-        place.longitude_deg, place.latitude_deg, place.height_m
-    )
+    origin = to_ecef.transform(place.longitude_deg, place.latitude_deg, place.height_m)
     lon, lat = np.radians([place.longitude_deg, place.latitude_deg])
     (sin_lon, sin_lat), (cos_lon, cos_lat) = np.sin([lon, lat]), np.cos([lon, lat])
     east = (-sin_lon, cos_lon, 0.0)
@@ -61,9 +59,8 @@ def tileset(
     """Describe a city: a root without content, and a leaf a block.
 
     Without a `place` the root has no transform, and the city lies on a plane at the
-    origin. A leaf is refined to as soon as its block would cover about sixteen pixels
-    (the usual screen-space error), which the root's geometric error of the city's
-    diagonal brings about.
+    origin. The root's geometric error is the city's diagonal, so that blocks are loaded
+    as soon as the whole city covers about sixteen pixels (the usual threshold).
 
     Raises:
         ValueError: if there is no tile, or if a tile has a place and the city has none.
@@ -109,7 +106,9 @@ def city_from_block(tile: Tile, place: Place | None) -> Matrix4:
 def box(low_m: Sequence[float], high_m: Sequence[float]) -> list[float]:
     """Write an axis-parallel box as 3D Tiles does: centre and three half axes."""
     low, high = np.asarray(low_m, float), np.asarray(high_m, float)
-    return _numbers(np.concatenate([(low + high) / 2, np.diag((high - low) / 2).ravel()]))
+    return _numbers(
+        np.concatenate([(low + high) / 2, np.diag((high - low) / 2).ravel()])
+    )
 
 
 def box_corners(
@@ -143,5 +142,5 @@ def _columns(matrix: Matrix4) -> list[float]:
 
 
 def _numbers(values: np.ndarray) -> list[float]:
-    """Round to a tenth of a nanometre and drop the sign of zero, to write like bytes."""
+    """Round to a tenth of a nanometre and drop the sign of zero, for equal bytes."""
     return [float(value) + 0.0 for value in np.round(values, 10)]

@@ -50,7 +50,7 @@ def fronts(name: str = "1") -> tuple[Front, ...]:
 
 
 def painted(width_m: float, storeys: int, *, facade: int, seed: int) -> Elevation:
-    """Paint windows on a wall; a car has hidden its foot, a stepped roof its corners."""
+    """Paint windows on a wall; a car hid its foot, and some roofs are stepped."""
     rng = np.random.default_rng(seed)
     h, w = round(storeys * STOREY_M * TEXELS), round(width_m * TEXELS)
     wall = rng.normal(rng.integers(90, 190), 6, (h, w))
@@ -91,7 +91,10 @@ def elevations(name: str = "1") -> dict[tuple[str, int], Elevation]:
     drawn = {}
     for number, (lot, side, _, _, width, _, storeys) in enumerate(LOTS):
         if storeys:
-            key = (f"photo-{name}-{lot}", 1 if (lot, side) in {("9", 1), ("1", 0)} else 0)
+            key = (
+                f"photo-{name}-{lot}",
+                1 if (lot, side) in {("9", 1), ("1", 0)} else 0,
+            )
             seed = number + 100 * sum(map(ord, name))
             drawn[key] = painted(width, storeys, facade=key[1], seed=seed)
     return drawn
@@ -102,7 +105,7 @@ def assignments(name: str = "1") -> tuple[Assignment, ...]:
         Assignment(
             front_id=f"{name}-{lot}-{side}",
             photo=f"photo-{name}-{lot}",
-            facade=1 if (lot, side) in {("9", 1), ("1", 0)} else 0,
+            facade=int((lot, side) in {("9", 1), ("1", 0)}),
             score=0.9,
         )
         for lot, side, *_, storeys in LOTS
@@ -146,13 +149,13 @@ def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
         origin = (0.0, index * 90.0)
         tiles.append(tileset.Tile(f"blocks/{name}.glb", low, high, origin_m=origin))
         known = facts.table(made, fronts(name), assignments(name))
-        for number in range(len(made.buildings)):
-            rows.append(
-                {
-                    key: value[number] if isinstance(value, list) else value[number].item()
-                    for key, value in known.items()
-                }
-            )
+        columns = [
+            value if isinstance(value, list) else value.tolist()
+            for value in known.values()
+        ]
+        rows += [
+            dict(zip(known, row, strict=True)) for row in zip(*columns, strict=True)
+        ]
     text = json.dumps(tileset.tileset(tiles), indent=1)
     (folder / "tileset.json").write_text(text)
     (folder / "buildings.json").write_text(json.dumps(rows, indent=1))

@@ -1,0 +1,22 @@
+"""House numbers, as catalogues write them."""
+
+import re
+
+NUMBERS = re.compile(r"\s*(\d+)\s*[A-Za-z]?(?:\s*(?:1/2|½))?(?:\s*[-/\u2013]\s*(\d+))?")
+
+
+def house_numbers(address: str) -> tuple[int, int] | None:
+    """Read the lowest and the highest house number of an address.
+
+    "561-565" is (561, 565); "108-12" is short for 108-112; "147" and "147A" stand
+    alone. None where an address starts with no number.
+    """
+    found = NUMBERS.match(address)
+    if found is None:
+        return None
+    low, rest = found.groups()
+    if rest is None:
+        return int(low), int(low)
+    if len(rest) < len(low):
+        rest = low[: len(low) - len(rest)] + rest
+    return min(int(low), int(rest)), max(int(low), int(rest))
