@@ -1,0 +1,162 @@
+// The city: its records (site.json) and its models (tileset.json), in one level frame.
+//
+// The frame is the first block's: x east, y up, z south, in metres.
+
+import { Group, Matrix4, OrthographicCamera, Sphere, Vector3 } from 'three';
+import { TilesRenderer } from '3d-tiles-renderer';
+import { GLTFExtensionsPlugin } from '3d-tiles-renderer/plugins';
+import { MeshBVH } from 'three-mesh-bvh';
+
+import { united } from './model.js';
+import { EvidenceVariant, surface } from './paint.js';
+import { survey } from './survey.js';
+
+const Y_UP_FROM_Z_UP = new Matrix4().makeRotationX(-Math.PI / 2);
+const NEAR_M = 90; // blocks this close are loaded, whichever way the walker looks
+
+export class City {
+  /** @param record site.json; @param tiles the running TilesRenderer */
+  constructor(record, tiles) {
+    this.record = record;
+    this.tiles = tiles;
+    this.group = new Group();
+    this.group.add(tiles.group);
+    this.frames = new Map(); // block name -> Matrix4, city_from_block (y up)
+    this.walls = new Set(); // meshes that can be walked into and clicked
+    this.buildings = new Map(); // building id -> { record, block, shape }
+    this.errors = [];
+    this.onBlock = () => {};
+    this.nearby = new OrthographicCamera(-NEAR_M, NEAR_M, NEAR_M, -NEAR_M, 1, 2000);
+    for (const block of record.blocks) {
+      for (const building of block.buildings) {
+        this.buildings.set(String(building.id), { record: building, block, shape: null });
+      }
+    }
+    tiles.setCamera(this.nearby);
+    tiles.setResolution(this.nearby, 512, 512);
+    tiles.addEventListener('load-model', ({ scene, tile }) => this.#enter(scene, tile));
+    tiles.addEventListener('dispose-model', ({ scene }) => this.#leave(scene));
+    this.onError = () => {};
+    tiles.addEventListener('load-error', ({ error }) => {
+      this.errors.push(String(error));
+      this.onError(error);
+    });
+  }
+
+  /** Keeps the models near `at` and in `camera`'s view loaded. */
+  update(at) {
+    this.nearby.position.set(at.x, 1000, at.z);
+    this.nearby.up.set(0, 0, -1);
+    this.nearby.lookAt(at.x, 0, at.z);
+    this.nearby.updateMatrixWorld();
+    this.tiles.update();
+  }
+
+  get loaded() {
+    return this.tiles.stats.loaded ?? 0;
+  }
+
+  /** Lays the city's frame into the first block, once the tileset is known. */
+  arrange(root) {
+    const content = new Map();
+    collect(root, new Matrix4(), content);
+    const worlds = this.record.blocks.map((block) => content.get(block.uri));
+    const first = worlds.find(Boolean) ?? new Matrix4();
+    const city = Y_UP_FROM_Z_UP.clone().multiply(first.clone().invert());
+    city.decompose(this.tiles.group.position, this.tiles.group.quaternion, this.tiles.group.scale);
+    this.group.updateMatrixWorld(true);
+    const zUpFromYUp = Y_UP_FROM_Z_UP.clone().invert();
+    this.record.blocks.forEach((block, i) => {
+      if (!worlds[i]) return;
+      this.frames.set(block.name, city.clone().multiply(worlds[i]).multiply(zUpFromYUp));
+    });
+  }
+
+  /** The middle of the first block, as far as the tileset tells it. */
+  middle() {
+    const sphere = new Sphere();
+    this.tiles.getBoundingSphere(sphere);
+    sphere.applyMatrix4(this.tiles.group.matrixWorld);
+    const first = this.record.blocks.find((block) => this.frames.has(block.name) && block.outline_m?.length);
+    if (!first) return sphere.center;
+    const [x, z] = this.placed(first, first.outline_m[0])[0];
+    return new Vector3(x, 0, z);
+  }
+
+  /** An outline of a block, as rows of [x, z] in the city's frame. */
+  placed(block, outline) {
+    const frame = this.frames.get(block.name);
+    return outline.map(([east, north]) => {
+      const p = new Vector3(east, 0, -north).applyMatrix4(frame);
+      return [p.x, p.z];
+    });
+  }
+
+  /** The building at one face of a mesh, or null. */
+  buildingAt(mesh, face) {
+    const feature = mesh.geometry.attributes._feature_id_0?.getX(face.a);
+    const id = mesh.userData.ids[feature];
+    return id === undefined ? null : this.buildings.get(id) ?? null;
+  }
+
+  #enter(scene, tile) {
+    place(scene, this.tiles.group.matrixWorld);
+    const block = this.record.blocks.find((one) => tile.content.uri.endsWith(one.uri));
+    const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
+    const mesh = united(scene, assumed);
+    if (!mesh) return;
+    place(scene, this.tiles.group.matrixWorld);
+    mesh.geometry.boundsTree = new MeshBVH(mesh.geometry);
+    mesh.material = surface(mesh);
+    this.walls.add(mesh);
+    for (const [feature, shape] of survey(mesh)) {
+      const building = this.buildings.get(mesh.userData.ids[feature]);
+      if (building) building.shape = shape;
+    }
+    if (block) this.onBlock(block);
+  }
+
+  #leave(scene) {
+    scene.traverse((mesh) => {
+      if (!this.walls.delete(mesh)) return;
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+      mesh.userData.evidence?.dispose();
+    });
+  }
+}
+
+/** Reads site.json and starts to load tileset.json, both beside the page. */
+export async function open(base = '') {
+  const response = await fetch(`${base}site.json`);
+  if (!response.ok) throw new Error(`site.json: ${response.status}`);
+  const record = await response.json();
+  const tiles = new TilesRenderer(new URL(`${base}tileset.json`, location.href).href);
+  tiles.registerPlugin(
+    new GLTFExtensionsPlugin({ plugins: [(parser) => new EvidenceVariant(parser)] }),
+  );
+  const city = new City(record, tiles);
+  const rooted = new Promise((resolve, reject) => {
+    tiles.addEventListener('load-root-tileset', resolve, { once: true });
+    tiles.addEventListener('load-error', ({ error, tile }) => tile || reject(error));
+  });
+  tiles.update();
+  await rooted;
+  city.arrange(tiles.rootTileset.root);
+  return city;
+}
+
+/** Sets world matrices of a model that is loaded but not yet in the scene. */
+function place(object, world) {
+  if (object.matrixAutoUpdate) object.updateMatrix();
+  object.matrixWorld.multiplyMatrices(world, object.matrix);
+  for (const child of object.children) place(child, object.matrixWorld);
+}
+
+/** Every content address under a tile, with the transform that places it. */
+function collect(tile, parent, found) {
+  const world = parent.clone();
+  if (tile.transform) world.multiply(new Matrix4().fromArray(tile.transform));
+  if (tile.content?.uri) found.set(tile.content.uri, world);
+  for (const child of tile.children ?? []) collect(child, world, found);
+}

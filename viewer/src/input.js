@@ -1,0 +1,133 @@
+// Keys, mouse and fingers, gathered into intentions: where to walk, how to turn.
+
+const WALK = { KeyW: [0, 1], ArrowUp: [0, 1], KeyS: [0, -1], ArrowDown: [0, -1], KeyA: [-1, 0], KeyD: [1, 0] };
+const TURN = { ArrowLeft: 1, ArrowRight: -1 };
+const CLICK_PX = 6; // a press that moves less is a click
+
+export class Input {
+  constructor(canvas, stick) {
+    this.canvas = canvas;
+    this.keys = new Set();
+    this.look = [0, 0]; // pixels turned since last asked
+    this.zoom = 0; // notches since last asked
+    this.stick = [0, 0];
+    this.onClick = () => {};
+    this.onKey = () => {};
+    this.#keyboard();
+    this.#pointer();
+    this.#touchStick(stick);
+  }
+
+  /** Right and forward, each from -1 to 1. */
+  get move() {
+    const sum = [...this.stick];
+    for (const key of this.keys) {
+      const way = WALK[key];
+      if (way) for (const i of [0, 1]) sum[i] += way[i];
+    }
+    return sum.map((v) => Math.max(-1, Math.min(1, v)));
+  }
+
+  /** Left is 1, right is -1. */
+  get turn() {
+    return [...this.keys].reduce((sum, key) => sum + (TURN[key] ?? 0), 0);
+  }
+
+  get hurried() {
+    return this.keys.has('ShiftLeft') || this.keys.has('ShiftRight');
+  }
+
+  /** What the pointer did since the last call. */
+  taken() {
+    const { look, zoom } = this;
+    this.look = [0, 0];
+    this.zoom = 0;
+    return { look, zoom };
+  }
+
+  toggleLock() {
+    if (document.pointerLockElement) document.exitPointerLock();
+    else this.canvas.requestPointerLock?.();
+  }
+
+  #keyboard() {
+    const typing = (target) => target.closest?.('input, textarea, select, dialog');
+    addEventListener('keydown', (event) => {
+      if (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+      const known = event.code in WALK || event.code in TURN;
+      const scrolls = event.target.closest?.('aside') && event.code.startsWith('Arrow');
+      if (known && !scrolls) {
+        event.preventDefault();
+        this.keys.add(event.code);
+      } else if (event.code.startsWith('Shift')) this.keys.add(event.code);
+      else if (!event.repeat) this.onKey(event);
+    });
+    addEventListener('keyup', (event) => this.keys.delete(event.code));
+    addEventListener('blur', () => this.keys.clear());
+  }
+
+  #pointer() {
+    let last = null;
+    let travelled = 0;
+    const { canvas } = this;
+    canvas.addEventListener('pointerdown', (event) => {
+      last = [event.clientX, event.clientY];
+      travelled = 0;
+      canvas.setPointerCapture?.(event.pointerId);
+      canvas.focus();
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      if (document.pointerLockElement) {
+        this.look[0] -= event.movementX;
+        this.look[1] -= event.movementY;
+      } else if (last) {
+        const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]];
+        travelled += Math.abs(dx) + Math.abs(dy);
+        this.look[0] += dx;
+        this.look[1] += dy;
+        last = [event.clientX, event.clientY];
+      }
+    });
+    canvas.addEventListener('pointerup', (event) => {
+      if (last && travelled < CLICK_PX) {
+        const locked = Boolean(document.pointerLockElement);
+        const box = canvas.getBoundingClientRect();
+        const x = locked ? 0 : ((event.clientX - box.left) / box.width) * 2 - 1;
+        const y = locked ? 0 : 1 - ((event.clientY - box.top) / box.height) * 2;
+        this.onClick(x, y);
+      }
+      last = null;
+    });
+    canvas.addEventListener('pointercancel', () => { last = null; });
+    canvas.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      this.zoom += Math.sign(event.deltaY);
+    }, { passive: false });
+  }
+
+  #touchStick(stick) {
+    const centre = () => {
+      const box = stick.getBoundingClientRect();
+      return [box.x + box.width / 2, box.y + box.height / 2, box.width / 2];
+    };
+    const set = (event) => {
+      const [x, y, radius] = centre();
+      this.stick = [(event.clientX - x) / radius, (y - event.clientY) / radius];
+      const length = Math.hypot(...this.stick);
+      if (length > 1) this.stick = this.stick.map((v) => v / length);
+      stick.style.setProperty('--x', this.stick[0]);
+      stick.style.setProperty('--y', -this.stick[1]);
+    };
+    const rest = () => {
+      this.stick = [0, 0];
+      stick.style.setProperty('--x', 0);
+      stick.style.setProperty('--y', 0);
+    };
+    stick.addEventListener('pointerdown', (event) => {
+      stick.setPointerCapture(event.pointerId);
+      set(event);
+    });
+    stick.addEventListener('pointermove', (event) => stick.hasPointerCapture(event.pointerId) && set(event));
+    for (const end of ['pointerup', 'pointercancel']) stick.addEventListener(end, rest);
+  }
+}

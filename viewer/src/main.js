@@ -1,0 +1,348 @@
+// Wires the page together, and lets tests and scripts drive it through window.nostalgin.
+
+import { MathUtils, Quaternion, Raycaster, Vector2, Vector3 } from 'three';
+
+import { Bird } from './bird.js';
+import { open } from './city.js';
+import { Finder } from './finder.js';
+import { Input } from './input.js';
+import { fillLegend } from './legend.js';
+import { Minimap } from './minimap.js';
+import { shown } from './paint.js';
+import { Panel } from './panel.js';
+import { fromHash, toHash } from './pose.js';
+import { Stage } from './stage.js';
+import { frontOf } from './survey.js';
+import { Walker, along, before } from './walker.js';
+import { contains } from './outline.js';
+import { nameOf } from './words.js';
+
+const $ = (id) => document.getElementById(id);
+const FLIGHT_S = 1.1;
+const LONGEST_STEP_S = 0.1;
+
+class Page {
+  constructor(city) {
+    this.city = city;
+    this.stage = new Stage($('view'));
+    this.input = new Input($('view'), $('stick'));
+    this.walker = new Walker();
+    this.bird = new Bird();
+    this.minimap = new Minimap($('plan').firstElementChild);
+    this.panel = new Panel($('panel'), {
+      onClose: () => this.mark(null),
+      onVisit: (record) => this.visit(String(record.id)),
+    });
+    this.finder = new Finder($('finder'), city, (id) => this.visit(id, true));
+    this.ray = new Raycaster();
+    this.ray.firstHitOnly = true;
+    this.flying = false;
+    this.height = 0; // 0 on foot, 1 in the air
+    this.chosen = null;
+    this.home = null;
+    this.held = false;
+    this.said = 0;
+    this.stage.scene.add(city.group);
+    this.stage.camera.rotation.order = 'YXZ';
+    city.tiles.setCamera(this.stage.camera);
+    this.walker.raised = this.stage.raised;
+    this.walker.bounds = this.stage.box;
+  }
+
+  /** Paves what the records tell, then waits for the first model to stand before it. */
+  async begin() {
+    const { city, stage } = this;
+    for (const block of city.record.blocks) {
+      if (block.outline_m?.length && city.frames.has(block.name)) {
+        stage.pave(block.name, block.outline_m.map((ring) => city.placed(block, ring)));
+      }
+    }
+    this.listen();
+    this.resize();
+    const wished = fromHash(location.hash);
+    const middle = city.middle();
+    this.walker.pose = wished.pose ?? { x: middle.x, z: middle.z, yaw: 0, pitch: 0 };
+    if (wished.evidence) this.setEvidence(true);
+    const settled = new Promise((resolve, reject) => {
+      city.onError = reject;
+      city.onBlock = (block) => {
+        const shapes = block.buildings.map(({ id }) => city.buildings.get(String(id)).shape);
+        stage.settle(block, shapes.filter(Boolean));
+        resolve(block);
+      };
+    });
+    stage.renderer.setAnimationLoop((time) => this.frame(time));
+    const block = await settled;
+    this.home = this.homeIn(block);
+    if (!wished.pose) this.walker.pose = this.home;
+    if (wished.bird) this.setBird(true, true);
+    if (wished.building && city.buildings.has(wished.building)) this.select(wished.building);
+    document.body.classList.add('running');
+    $('view').focus({ preventScroll: true });
+  }
+
+  homeIn(block) {
+    const known = block.buildings.map(({ id }) => this.city.buildings.get(String(id)));
+    const standing = known.filter(({ shape }) => shape?.walls.length);
+    const fronts = standing.filter(({ record }) => !record.assumed);
+    const { shape } = fronts[0] ?? standing[0] ?? {};
+    if (!shape) return this.walker.pose;
+    const wall = this.frontOf(shape);
+    return along(wall, standing.flatMap((one) => one.shape.walls), this.room(wall));
+  }
+
+  poseBefore(shape) {
+    const wall = this.frontOf(shape);
+    return before(wall, this.room(wall));
+  }
+
+  frontOf(shape) {
+    return frontOf(shape, (candidate) => this.clear(candidate));
+  }
+
+  /** How far one can step back from a wall. */
+  room({ a, b, out: [x, z] }) {
+    const out = new Vector3(x, 0, z);
+    const foot = new Vector3((a[0] + b[0]) / 2, 1.5, (a[1] + b[1]) / 2).addScaledVector(out, 0.3);
+    this.ray.set(foot, out);
+    const hit = this.ray.intersectObjects([...this.city.walls], false)[0];
+    return hit ? Math.max(2.5, Math.min(16, hit.distance * 0.6)) : 16;
+  }
+
+  /** Whether the ground before a wall is free. */
+  clear({ a, b, out }) {
+    const at = [(a[0] + b[0]) / 2 + 2 * out[0], (a[1] + b[1]) / 2 + 2 * out[1]];
+    for (const { shape } of this.city.buildings.values()) {
+      if (shape?.roofs.some((roof) => contains(roof, at))) return false;
+    }
+    return true;
+  }
+
+  frame(time) {
+    const dt = Math.min((time - (this.lastTime ?? time)) / 1000, LONGEST_STEP_S);
+    this.lastTime = time;
+    if (!this.held) this.step(dt);
+    this.draw();
+  }
+
+  step(dt) {
+    const goal = this.flying ? 1 : 0;
+    const left = Math.abs(goal - this.height);
+    this.height += Math.sign(goal - this.height) * Math.min(left, dt / FLIGHT_S);
+    if (this.flying) this.bird.step(dt, this.input);
+    else this.walker.step(dt, this.input, this.city.walls);
+    this.aim();
+    this.said += dt;
+    if (this.said > 0.4) {
+      this.said = 0;
+      this.tell();
+    }
+  }
+
+  aim() {
+    const { camera } = this.stage;
+    if (this.height < 1) this.walker.aim(camera);
+    if (this.height > 0) {
+      const from = { p: camera.position.clone(), q: camera.quaternion.clone() };
+      this.bird.aim(camera);
+      if (this.height < 1) {
+        const t = MathUtils.smootherstep(this.height, 0, 1);
+        camera.position.lerpVectors(from.p, camera.position.clone(), t);
+        camera.quaternion.copy(new Quaternion().slerpQuaternions(from.q, camera.quaternion.clone(), t));
+      }
+    }
+    camera.updateMatrixWorld();
+  }
+
+  draw() {
+    this.city.update(this.walker.feet);
+    this.stage.draw(1 - 0.72 * this.height);
+    this.minimap.draw(this.walker.pose, this.city, this.stage.raised, this.chosen, shown.evidence.value);
+    const progress = Math.round(this.city.tiles.loadProgress * 100);
+    $('progress').setAttribute('aria-valuenow', progress);
+    $('progress').firstElementChild.style.width = `${progress}%`;
+  }
+
+  /** Says where one is, on the page and in the address bar. */
+  tell() {
+    const near = this.nearest();
+    const text = near ? `${near.distance < 25 ? 'Before' : 'Near'} ${nameOf(near.record)}` : '';
+    if ($('place').textContent !== text) $('place').textContent = text;
+    const hash = toHash({
+      pose: this.walker.pose,
+      building: this.chosen,
+      evidence: shown.evidence.value > 0,
+      bird: this.flying,
+    });
+    if (hash !== location.hash) history.replaceState(null, '', hash);
+  }
+
+  nearest() {
+    const { x, z } = this.walker.feet;
+    let best = null;
+    for (const { record, shape } of this.city.buildings.values()) {
+      for (const { a, b, out } of shape?.walls ?? []) {
+        const inFront = (x - a[0]) * out[0] + (z - a[1]) * out[1] > -0.5;
+        const t = ((x - a[0]) * (b[0] - a[0]) + (z - a[1]) * (b[1] - a[1]))
+          / ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2);
+        const s = MathUtils.clamp(t, 0, 1);
+        const distance = Math.hypot(a[0] + s * (b[0] - a[0]) - x, a[1] + s * (b[1] - a[1]) - z);
+        if (inFront && (!best || distance < best.distance)) best = { record, distance };
+      }
+    }
+    return best;
+  }
+
+  /** The building at a point of the view, both coordinates from -1 to 1; or null. */
+  pick(x, y) {
+    this.aim();
+    this.ray.setFromCamera(new Vector2(x, y), this.stage.camera);
+    const hit = this.ray.intersectObjects([...this.city.walls], false)[0];
+    const found = hit && this.city.buildingAt(hit.object, hit.face);
+    return found ? { ...found.record, block: found.block.block, distance: hit.distance } : null;
+  }
+
+  select(id) {
+    const found = this.city.buildings.get(id);
+    if (!found) return;
+    this.mark(id);
+    this.panel.show(found);
+  }
+
+  mark(id) {
+    this.chosen = id;
+    this.stage.choose(id ? this.city.buildings.get(id).shape : null);
+  }
+
+  /** Goes to stand before a building; flies above it where its model is not yet there. */
+  visit(id, show = false) {
+    const found = this.city.buildings.get(id);
+    if (found.shape) {
+      this.setBird(false);
+      this.walker.pose = this.poseBefore(found.shape);
+    } else if (found.block.outline_m?.length) {
+      const [x, z] = this.city.placed(found.block, found.block.outline_m[0])[0];
+      this.setBird(false);
+      this.walker.pose = { x, z: z + 8, yaw: 0, pitch: 0 };
+    }
+    if (show) this.select(id);
+  }
+
+  setEvidence(on) {
+    shown.evidence.value = on ? 1 : 0;
+    $('legend').hidden = !on;
+    press('KeyE', on);
+  }
+
+  setBird(on, now = false) {
+    if (on && !this.flying) {
+      this.bird.frame(this.stage.box, this.stage.camera, Math.round(this.walker.yaw * 2 / Math.PI) * Math.PI / 2 + 0.35);
+    }
+    this.flying = on;
+    if (now) this.height = on ? 1 : 0;
+    document.body.classList.toggle('bird', on);
+    press('KeyB', on);
+  }
+
+  key(code) {
+    const act = {
+      KeyE: () => this.setEvidence(!shown.evidence.value),
+      KeyB: () => this.setBird(!this.flying),
+      KeyG: () => this.finder.open(),
+      KeyH: () => $('help').showModal(),
+      KeyL: () => this.input.toggleLock(),
+      KeyF: () => this.click(0, 0),
+      Home: () => { this.setBird(false); this.walker.pose = this.home ?? this.walker.pose; },
+      Escape: () => this.panel.close(),
+    }[code];
+    act?.();
+    return Boolean(act);
+  }
+
+  click(x, y) {
+    const found = this.pick(x, y);
+    if (found) this.select(String(found.id));
+    else this.panel.close();
+  }
+
+  listen() {
+    this.input.onClick = (x, y) => this.click(x, y);
+    this.input.onKey = (event) => {
+      const code = event.key === '?' ? 'KeyH' : event.code;
+      if (this.key(code)) event.preventDefault();
+      document.body.classList.toggle('keys', code === 'KeyF' || document.body.classList.contains('keys'));
+    };
+    for (const button of document.querySelectorAll('[data-key]')) {
+      button.addEventListener('click', () => this.key(button.dataset.key));
+    }
+    document.addEventListener('pointerlockchange', () => {
+      document.body.classList.toggle('locked', Boolean(document.pointerLockElement));
+    });
+    addEventListener('resize', () => this.resize());
+    addEventListener('hashchange', () => {
+      const { pose, evidence, bird } = fromHash(location.hash);
+      if (pose) this.walker.pose = pose;
+      this.setEvidence(evidence);
+      this.setBird(bird);
+    });
+  }
+
+  resize() {
+    this.stage.fit(innerWidth, innerHeight);
+    this.city.tiles.setResolutionFromRenderer(this.stage.camera, this.stage.renderer);
+  }
+}
+
+function press(code, on) {
+  document.querySelector(`#tools [data-key=${code}]`).setAttribute('aria-pressed', on);
+}
+
+function complain(error) {
+  const text = document.createElement('p');
+  const missing = /json|404|Failed to fetch/.test(String(error));
+  text.textContent = missing
+    ? 'There is no city here yet. Run “nostalgin build CITY”, then “nostalgin view CITY”.'
+    : `The city could not be shown: ${error.message ?? error}`;
+  $('notice').replaceChildren(text);
+}
+
+async function start() {
+  const city = await open();
+  document.title = `${city.record.title} · Nostalgin`;
+  document.querySelector('#title h1').textContent = city.record.title;
+  fillLegend($('legend').querySelector('ul'));
+  const page = new Page(city);
+  window.nostalgin.page = page;
+  await page.begin();
+  return page;
+}
+
+const starting = start();
+starting.catch(complain);
+
+window.nostalgin = {
+  ready: starting.then(() => true),
+  step: async (dt) => { const page = await starting; page.step(dt); page.draw(); },
+  hold: async (on = true) => { (await starting).held = on; },
+  get pose() { return window.nostalgin.page.walker.pose; },
+  setPose: (pose) => { window.nostalgin.page.walker.pose = pose; window.nostalgin.page.aim(); },
+  pick: (x, y) => window.nostalgin.page.pick(x, y),
+  select: (id) => window.nostalgin.page.select(id),
+  setEvidence: (on) => window.nostalgin.page.setEvidence(on),
+  setBird: (on) => window.nostalgin.page.setBird(on, true),
+  get stats() {
+    const { city, stage, height } = window.nostalgin.page;
+    const { calls, triangles } = stage.renderer.info.render;
+    return {
+      loaded: city.loaded,
+      blocks: city.record.blocks.length,
+      progress: city.tiles.loadProgress,
+      errors: [...city.errors],
+      walls: city.walls.size,
+      calls,
+      triangles,
+      height,
+    };
+  },
+};
+

@@ -1,0 +1,126 @@
+// What is known of one building, beside its photograph. Text goes in as text, never as
+// markup: catalogues hold whatever people typed.
+
+import { metres, nameOf, percent } from './words.js';
+
+const MISSING = 'The photograph is not part of this site. Put the photographs back where the '
+  + 'manifest names them, and run “nostalgin build” again.';
+
+export class Panel {
+  constructor(element, { onClose, onVisit }) {
+    this.element = element;
+    this.onClose = onClose;
+    this.onVisit = onVisit;
+    this.before = null; // what had the focus
+  }
+
+  get open() {
+    return !this.element.hidden;
+  }
+
+  show({ record, block, shape }) {
+    if (!this.open) this.before = document.activeElement;
+    const name = nameOf(record);
+    const heading = make('h2', { id: 'panel-name', textContent: name });
+    const where = [record.block_title ?? `Block ${block.block}`, record.lot && `Lot ${record.lot}`];
+    const close = make('button', { className: 'close', title: 'Close (Esc)', textContent: '×' });
+    close.setAttribute('aria-label', 'Close');
+    close.addEventListener('click', () => this.close());
+    const visit = make('button', { className: 'visit', textContent: 'Stand before it' });
+    visit.disabled = !shape;
+    visit.addEventListener('click', () => this.onVisit(record));
+    this.element.replaceChildren(
+      close,
+      heading,
+      make('p', { className: 'where', textContent: where.filter(Boolean).join(' · ') }),
+      ...photographs(record, name),
+      facts(record),
+      ...unused(record),
+      visit,
+    );
+    this.element.hidden = false;
+    this.element.scrollTop = 0;
+    close.focus({ preventScroll: true });
+  }
+
+  close() {
+    if (!this.open) return;
+    this.element.hidden = true;
+    this.before?.focus?.({ preventScroll: true });
+    this.onClose();
+  }
+}
+
+function make(tag, properties = {}, children = []) {
+  const element = Object.assign(document.createElement(tag), properties);
+  element.append(...children);
+  return element;
+}
+
+function photographs(record, name) {
+  if (!record.photos?.length) {
+    const why = record.assumed
+      ? 'No photograph of this lot could be used. The plain volume is assumed.'
+      : 'This site names no photograph of this lot.';
+    return [make('p', { className: 'none', textContent: why })];
+  }
+  return record.photos.map((photo) => figure(photo, name));
+}
+
+function figure({ file, credit, caption, used }, name) {
+  const image = make('img', { alt: `Photograph of ${name}`, loading: 'lazy', decoding: 'async' });
+  const link = make('a', { target: '_blank', rel: 'noopener', title: 'Open the photograph' }, [image]);
+  const holder = make('figure', {}, [link]);
+  const absent = () => link.replaceWith(make('p', { className: 'none', textContent: MISSING }));
+  if (local(file)) {
+    image.addEventListener('error', absent);
+    image.src = link.href = file;
+  } else absent();
+  const words = [caption, used === false ? 'Not the one on the model.' : null].filter(Boolean);
+  const lines = words.map((text) => make('span', { textContent: text }));
+  if (credit) lines.push(make('cite', { textContent: credit }));
+  if (lines.length) holder.append(make('figcaption', {}, lines));
+  return holder;
+}
+
+/** Only files of this site are shown: no address that a catalogue might have smuggled in. */
+export function local(file) {
+  return typeof file === 'string' && /^photos\/[\w.-]+$/.test(file) && !file.includes('..');
+}
+
+function facts(record) {
+  const rows = [
+    ['Seen by a camera', share(record)],
+    ['Street', record.street],
+    ['Year', record.year],
+    ['Width', metres(record.width_m, record.width_sd_m)],
+    ['Height', record.assumed && record.height_m
+      ? `${metres(record.height_m)}, assumed` : metres(record.height_m, record.height_sd_m)],
+  ];
+  const list = make('dl');
+  for (const [term, value] of rows) {
+    if (value === undefined || value === null || value === '') continue;
+    const definition = make('dd');
+    definition.append(value);
+    list.append(make('dt', { textContent: term }), definition);
+  }
+  return list;
+}
+
+function share(record) {
+  const known = record.assumed ? 0 : record.photographed_share;
+  if (!Number.isFinite(known)) return null;
+  const meter = make('meter', { min: 0, max: 1, value: known });
+  meter.setAttribute('aria-label', 'share of the front that a camera saw');
+  const words = record.assumed ? 'none of it' : `${percent(known)} of the front`;
+  return make('span', {}, [words, meter]);
+}
+
+function unused(record) {
+  const rejections = record.rejections ?? [];
+  if (!rejections.length) return [];
+  const items = rejections.map(({ stage, reason, detail }) =>
+    make('li', { textContent: [`${stage}: ${reason}`, detail].filter(Boolean).join('. ') }));
+  const title = `${rejections.length} not used`;
+  return [make('details', {}, [make('summary', { textContent: title }), make('ul', {}, items)])];
+}

@@ -1,0 +1,86 @@
+// The stage: renderer, camera, sky, street, and what each block adds to the ground.
+
+import {
+  Box3, BufferGeometry, Float32BufferAttribute, FogExp2, LineBasicMaterial, LineSegments, Mesh,
+  PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+} from 'three';
+import { acceleratedRaycast } from 'three-mesh-bvh';
+
+import { outlineOf, pavement, shade, street } from './ground.js';
+import { HORIZON, sky } from './sky.js';
+
+Mesh.prototype.raycast = acceleratedRaycast;
+
+const HAZE = 0.0042; // per metre, on the street
+const INK = 0x26241f;
+
+export class Stage {
+  constructor(canvas) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.camera = new PerspectiveCamera(62, 1, 0.08, 4000);
+    this.scene = new Scene();
+    this.scene.fog = new FogExp2(HORIZON, HAZE);
+    this.dome = sky();
+    this.scene.add(this.dome, street());
+    this.box = new Box3();
+    this.raised = [];
+    this.paved = new Set();
+    this.chosen = null;
+  }
+
+  fit(width, height) {
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.fov = width < height ? 78 : 62;
+    this.camera.updateProjectionMatrix();
+  }
+
+  draw(haze = 1) {
+    this.scene.fog.density = HAZE * haze;
+    this.dome.position.copy(this.camera.position);
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** Lays sidewalks round outlines of [x, z], once per block. */
+  pave(name, outlines) {
+    if (this.paved.has(name) || !outlines.length) return;
+    this.paved.add(name);
+    const { group, walks } = pavement(outlines);
+    this.scene.add(group);
+    this.raised.push(...walks);
+    for (const [x, z] of outlines.flat()) this.box.expandByPoint(new Vector3(x, 0, z));
+  }
+
+  /** Adds what is known of a block only once its model is there. */
+  settle(block, shapes) {
+    this.pave(block.name, [outlineOf(shapes)]);
+    const walls = shapes.flatMap((shape) => shape.walls);
+    this.scene.add(shade(walls), edges(walls, INK, 0.35));
+    for (const { top } of shapes) this.box.max.y = Math.max(this.box.max.y, top);
+  }
+
+  /** Draws a line round one building, or none. */
+  choose(shape) {
+    if (this.chosen) {
+      this.scene.remove(this.chosen);
+      this.chosen.geometry.dispose();
+    }
+    this.chosen = shape ? edges(shape.walls, 0xf4d58a, 1) : null;
+    if (this.chosen) this.scene.add(this.chosen);
+  }
+}
+
+/** The outlines of walls, a finger's breadth before them. */
+function edges(walls, color, opacity) {
+  const position = [];
+  for (const { a, b, out, bottom, top } of walls) {
+    const at = ([x, z], y) => [x + out[0] * 0.02, y, z + out[1] * 0.02];
+    position.push(...at(a, bottom), ...at(a, top), ...at(a, top), ...at(b, top));
+    position.push(...at(b, top), ...at(b, bottom));
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new Float32BufferAttribute(position, 3));
+  const material = new LineBasicMaterial({ color, opacity, transparent: opacity < 1 });
+  return new LineSegments(geometry, material);
+}

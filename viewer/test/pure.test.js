@@ -1,0 +1,74 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { KINDS, palette } from '../src/evidence.js';
+import { contains, hull, signedArea2, widened } from '../src/outline.js';
+import { fromHash, toHash } from '../src/pose.js';
+import { feet, metres, percent } from '../src/words.js';
+
+const SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]];
+
+test('a pose survives the address bar', () => {
+  const view = {
+    pose: { x: -12.3, y: 1.62, z: 40.1, yaw: -90, pitch: 4.5 },
+    building: '993-11 <b>&',
+    evidence: true,
+    bird: false,
+  };
+  assert.deepEqual(fromHash(toHash(view)), view);
+});
+
+test('a hash that names no pose gives none', () => {
+  for (const hash of ['', '#', '#at=1,2,3', '#at=1,2,3,4,x', '#at=,,,,', '#at=1e9,0,0,0,0']) {
+    assert.equal(fromHash(hash).pose, null, hash);
+  }
+});
+
+test('an outline widened and narrowed again is itself', () => {
+  const back = widened(widened(SQUARE, 4), -4);
+  back.flat().forEach((value, i) => assert.ok(Math.abs(value - SQUARE.flat()[i]) < 1e-9));
+});
+
+test('widening a square by 1 adds 2 to each side, whichever way it runs', () => {
+  assert.equal(Math.abs(signedArea2(widened(SQUARE, 1))) / 2, 144);
+  assert.equal(Math.abs(signedArea2(widened([...SQUARE].reverse(), 1))) / 2, 144);
+});
+
+test('a needle-sharp corner is blunted', () => {
+  const needle = widened([[0, 0], [100, 0.5], [0, 1]], 4);
+  assert.ok(Math.max(...needle.map(([x]) => x)) < 120);
+});
+
+test('a hull holds all its points and nothing inside it', () => {
+  const points = [...SQUARE, [5, 5], [1, 9], [10, 5]];
+  assert.equal(Math.abs(signedArea2(hull(points))) / 2, 100);
+  assert.equal(hull(points).length, 4);
+});
+
+test('inside is inside and outside is outside, also in a notch', () => {
+  const notched = [[0, 0], [10, 0], [10, 10], [5, 2], [0, 10]];
+  assert.ok(contains(notched, [1, 5]));
+  assert.ok(!contains(notched, [5, 5]));
+  assert.ok(!contains(notched, [-1, 5]));
+});
+
+test('only what a camera saw stays untinted', () => {
+  const strengths = palette().map((row) => row[3]);
+  assert.equal(strengths[1], 0);
+  for (const code of [0, 2, 3, 4, 5, 6]) assert.equal(strengths[code], 1);
+  assert.deepEqual(KINDS.map((kind) => kind.code), [1, 2, 3, 4, 5, 6]);
+});
+
+test('all and none are said only of all and none', () => {
+  assert.equal(percent(0.999), '99 %');
+  assert.equal(percent(1), '100 %');
+  assert.equal(percent(0.001), 'under 1 %');
+  assert.equal(percent(0), '0 %');
+  assert.equal(percent(undefined), '—');
+});
+
+test('metres carry their spread and their feet', () => {
+  assert.equal(metres(7.62, 0.3), '7.6 ± 0.3 m (25′ 0″)');
+  assert.equal(metres(null), '—');
+  assert.equal(feet(0.3047), '1′ 0″');
+});
