@@ -13,6 +13,7 @@ import numpy as np
 
 from export.segmentation_data import Sample, Thing, fill
 from nostalgin_core.arrays import Gray, Points
+from nostalgin_core.records import Category
 
 SMALLEST_DONOR_PX = 16
 MARGIN_PX = 3
@@ -22,7 +23,7 @@ MARGIN_PX = 3
 class Donor:
     """Something cut out of a photograph, with a little of what surrounds it."""
 
-    category: str
+    category: Category
     patch: Gray
     polygon: Points  # in pixels of the patch
     foot: float  # height of its lowest pixel in its photo, 0 at the top, 1 below

@@ -14,7 +14,7 @@ import torch
 from export.mask_rcnn import MaskRCNN
 from export.segmentation_data import Sample, fill
 from nostalgin_core.measure_segmentation import agreement, overlap
-from nostalgin_core.records import Box, Instance, Photo
+from nostalgin_core.records import Box, Instance, Photo, Rejection
 from nostalgin_core.segment import Network, segment
 
 
@@ -48,7 +48,8 @@ def found(network: Network, sample: Sample) -> tuple[Instance, ...]:
     """Segment a sample, frame and all; nothing where it was rejected."""
     height, width = sample.image.shape
     photo = Photo(sample.name, sample.image, Box(0, 0, width, height))
-    return segment(photo, network) or ()
+    instances = segment(photo, network)
+    return () if isinstance(instances, Rejection) else instances
 
 
 def judged(sample: Sample, instances: Sequence[Instance]) -> dict:

@@ -44,7 +44,7 @@ def export(network: MaskRCNN, example: Float32[np.ndarray, "1 1 h w"]) -> bytes:
         torch.onnx.export(
             network.eval(),
             (torch.from_numpy(example),),
-            buffer,
+            buffer,  # pyright: ignore[reportArgumentType] (the stub knows paths only)
             opset_version=OPSET,
             input_names=["gray"],
             output_names=list(OUTPUTS),
@@ -132,6 +132,8 @@ def main() -> None:
 
 def _image(path: Path) -> Float32[np.ndarray, "1 1 h w"]:
     gray = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    if gray is None:
+        raise ValueError(f"not a picture: {path}")
     return prepared(gray, short_px=640, long_px=1344)[None, None]
 
 

@@ -23,16 +23,16 @@ def arrange(
     least: float = 0.5,
     smallest: float = 0.004,
     swallowed: float = 0.6,
-    recorded: float = 0.3,
-    bend: float = 0.35,
+    recorded: float = 0.2,
+    bend: float = 0.1,
 ) -> tuple[Facade, ...] | Rejection:
     """Return the fronts of a photo from left to right.
 
     A pixel is a front's where its probability exceeds `least` (paper, appendix). Fronts
     that keep less than the share `smallest` of the frame are dropped, and so are those
     of which a surer front covers the share `swallowed`. The front of the most merit is
-    the target if its merit reaches `recorded`; with it goes the neighbour that bends
-    away from it by more than `bend`.
+    the target if its merit reaches `recorded`; with it goes the neighbour towards
+    which both roofs rise by more than `bend`, in px a px.
     """
     hidden = covered_by(instances, photo.image.shape, least=least)
     kept = _apart(

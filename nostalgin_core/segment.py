@@ -30,8 +30,8 @@ def segment(
     *,
     short_px: int = 640,
     long_px: int = 1344,
-    facade_score: float = 0.4,
-    occluder_score: float = 0.4,
+    facade_score: float = 0.3,
+    occluder_score: float = 0.25,
 ) -> tuple[Instance, ...] | Rejection:
     """Find fronts and what hides them, surest first.
 
@@ -65,7 +65,9 @@ def segment(
     return tuple(found)
 
 
-def prepared(frame: Gray, *, short_px: int, long_px: int) -> Float32[np.ndarray, "h w"]:
+def prepared(
+    frame: Gray, *, short_px: int, long_px: int
+) -> Float32[np.ndarray, "rows columns"]:
     """Resize to the network's scale, each side to the nearest multiple of 32."""
     height, width = frame.shape
     scale = min(short_px / min(height, width), long_px / max(height, width))

@@ -7,8 +7,8 @@ fills, how sure the network is of it, and whether the frame cuts it. The weights
 fitted to the hand labels of tax blocks 996 and 997.
 
 A corner building shows two fronts. Its second front stands at the first one's side,
-meets it at the same height, and the two bend away from the camera: their roof lines
-rise, and their feet sink, towards the edge that they share.
+meets it at the same height, and both roof lines rise towards the edge that they share,
+since that edge is what stands nearest to the camera.
 """
 
 from collections.abc import Sequence
@@ -19,8 +19,13 @@ from jaxtyping import Float
 from nostalgin_core.arrays import Mask
 from nostalgin_core.records import Box
 
-WEIGHTS = np.array([0.0, -6.0, -4.0, 2.0, 2.0, -1.0])
+WEIGHTS = np.array([-0.76, -3.28, -3.40, 1.42, 0.89, -1.27])
 """For 1, distance to the middle, distance to the board, area, score, cut."""
+INNER = np.array([0.1, 0.5, 0.9])  # shares of a front's pixels, from the left
+EDGE_PX = 6  # outlines are no better
+FEWEST_COLUMNS = 12
+WIDEST_GAP = 0.25  # of the narrower front
+MISMATCH = 0.12  # of the lower front's height
 
 
 def merits(
@@ -47,7 +52,7 @@ def features(
     width, height = frame.x1 - frame.x0, frame.y1 - frame.y0
     columns = np.flatnonzero(mask.any(0))
     weight = mask[:, columns].sum(0).cumsum()
-    low, centre, high = columns[np.searchsorted(weight, weight[-1] * SPAN)]
+    low, centre, high = columns[np.searchsorted(weight, weight[-1] * INNER)]
     middle = (frame.x0 + frame.x1) / 2
     aim = middle if board is None else (board.x0 + board.x1) / 2
     far = max(low - aim, aim - high, 0.0) / width
@@ -56,45 +61,44 @@ def features(
     return np.array([1.0, abs(centre - middle) / width, far, area, score, float(cut)])
 
 
-SPAN = np.array([0.1, 0.5, 0.9])
-EDGE_PX = 4
-
-
 def corner(left: Mask, right: Mask) -> float:
-    """Return how strongly two neighbouring fronts bend away from their shared edge.
+    """Return how steeply two neighbouring fronts' roofs rise to their shared edge.
 
-    The sum of four slopes in px a px: positive where roofs rise and feet sink towards
-    the edge, as at a corner seen from outside; about 0 for two fronts of one street.
-    Minus infinity where they do not meet, or at unequal heights.
+    The lesser of the two slopes, in px a px: positive only where both rise, as at a
+    corner seen from outside; fronts of one street rise and fall together. Feet would
+    sink there, but cars hide them. Minus infinity where the two do not meet, or at
+    unequal heights.
     """
     a, b = np.flatnonzero(left.any(0)), np.flatnonzero(right.any(0))
-    wide = min(len(a), len(b))
+    narrow = min(len(a), len(b))
+    if narrow < FEWEST_COLUMNS:
+        return -np.inf
     gap = np.percentile(b, 2) - np.percentile(a, 98)
-    if wide < 12 or abs(gap) > 0.25 * wide + 6:
+    if abs(gap) > WIDEST_GAP * narrow + EDGE_PX:
         return -np.inf
-    at_left, slopes_left = _ends(left, a, near=a[-1])
-    at_right, slopes_right = _ends(right, b, near=b[0])
-    tall = min(at_left[1] - at_left[0], at_right[1] - at_right[0])
-    if tall <= 0 or abs(at_left[0] - at_right[0]) > TOP_MISMATCH * tall:
+    roof_left, foot_left, rise_left = _edge(left, a, near=int(a[-1]))
+    roof_right, foot_right, rise_right = _edge(right, b, near=int(b[0]))
+    tall = min(foot_left - roof_left, foot_right - roof_right)
+    if tall <= 0 or abs(roof_left - roof_right) > MISMATCH * tall:
         return -np.inf
-    return float(slopes_right[0] - slopes_left[0] + slopes_left[1] - slopes_right[1])
+    return min(-rise_left, rise_right)
 
 
-TOP_MISMATCH = 0.08
+def _edge(mask: Mask, columns: np.ndarray, *, near: int) -> tuple[float, float, float]:
+    """Return where roof and foot meet column `near`, and the roof line's slope.
 
-
-def _ends(
-    mask: Mask, columns: np.ndarray, *, near: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Fit roof and foot; return their heights at column `near` and their slopes."""
-    inner = columns[len(columns) // 10 : max(1, len(columns) - len(columns) // 10)]
-    tops = np.argmax(mask[:, inner], axis=0)
+    Lines are fitted to the inner eight tenths of the columns: slopes between the two
+    halves, then their median.
+    """
+    margin = len(columns) // 10
+    inner = columns[margin : len(columns) - margin]
+    roofs = np.argmax(mask[:, inner], axis=0)
     feet = mask.shape[0] - 1 - np.argmax(mask[::-1, inner], axis=0)
-    heights, slopes = [], []
-    for line in (tops, feet):
-        half = len(inner) // 2
-        run = np.maximum(inner[half:] - inner[: len(inner) - half], 1)
-        slope = np.median((line[half:] - line[: len(inner) - half]) / run)
-        heights.append(np.median(line - slope * inner) + slope * near)
+    half = len(inner) // 2
+    run = inner[half:] - inner[: len(inner) - half]
+    ends, slopes = [], []
+    for line in (roofs, feet):
+        slope = float(np.median((line[half:] - line[: len(inner) - half]) / run))
         slopes.append(slope)
-    return np.array(heights), np.array(slopes)
+        ends.append(float(np.median(line + slope * (near - inner))))
+    return ends[0], ends[1], slopes[0]
