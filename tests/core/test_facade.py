@@ -26,9 +26,11 @@ def _instance(
     return Instance(category, score, box, inside)
 
 
-def _rectangle(x0: int, y0: int, x1: int, y1: int, *rest: str, **options: float) -> Instance:
+def _rectangle(
+    x0: int, y0: int, x1: int, y1: int, *rest: str, **options: float
+) -> Instance:
     corners = [(x0, y0), (x1 - 1, y0), (x1 - 1, y1 - 1), (x0, y1 - 1)]
-    return _instance(corners, *rest: str, **options: float)
+    return _instance(corners, *rest, **options)
 
 
 PHOTO = Photo("a photo", np.zeros(SIZE, np.uint8), Box(0, 0, SIZE[1], SIZE[0]))
