@@ -22,7 +22,6 @@ from nostalgin_core import (
     mesh,
     photo,
     picture,
-    placard,
     quantise,
     rectify,
     segment,
@@ -90,6 +89,8 @@ def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, 
     instances = quantise.instances(instances)
     yield "segment", instances
     if networks.read is not None:
+        from nostalgin_core import placard
+
         yield "placard", placard.read(picture, board(instances), networks.read)
     matted = matte.matte(picture, instances)
     if isinstance(matted, Rejection):

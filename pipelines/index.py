@@ -57,7 +57,7 @@ def index(
         Nothing: if there are no photos, or no row of the catalogue makes sense.
     """
     names = images(photos)
-    read = from_names(names, photos.name) if listed is None else from_csv(listed, blocks)
+    read = from_names(names, photos.name) if listed is None else from_csv(listed)
     wanted = [e for e in read.entries if not blocks or e.block in blocks]
     if not wanted:
         raise Nothing(
@@ -83,8 +83,14 @@ def index(
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
         rejections=(*read.rejections, *(strangers if not blocks else ())),
-        warnings=(*read.warnings, *doubts),
+        warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts),
     )
+
+
+def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
+    """Leave out what is said about rows that were not asked for."""
+    named = [(re.search(r" row (\d+):", warning), warning) for warning in warnings]
+    return [text for row, text in named if row is None or int(row[1]) in rows]
 
 
 def first_credit(entries: Sequence[Entry]) -> str:
@@ -110,8 +116,8 @@ def images(folder: Path) -> list[str]:
     return found
 
 
-def from_csv(path: Path, blocks: Sequence[str] = ()) -> Catalogue:
-    """Read a catalogue, or what it says of some blocks.
+def from_csv(path: Path) -> Catalogue:
+    """Read a catalogue.
 
     Raises:
         Nothing: if it can't be read, or no row of it makes sense.

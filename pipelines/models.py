@@ -50,7 +50,19 @@ class Models:
         from nostalgin_core.reconstruct import Networks
 
         read = reader() if placard else None
-        return Networks(self.load("segment"), self.load("inpaint"), read)
+        return Networks(self.load("segment"), self.inpainter(), read)
+
+    def inpainter(self) -> Callable[..., Any]:
+        """Load the inpainter; until it is trained, its guess stands for it."""
+        try:
+            return self.load("inpaint")
+        except Unlocked:
+            return guessed
+
+
+def guessed(_image: Any, _hole: Any, guess: Any) -> tuple[Any]:
+    """Pass the guess through."""
+    return (guess,)
 
 
 class Once:

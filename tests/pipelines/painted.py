@@ -90,7 +90,9 @@ def network(
         [numpy_helper.from_array(value, name) for name, value in constants.items()],
     )
     opset = [helper.make_opsetid("", 17)]
-    return helper.make_model(graph, opset_imports=opset, ir_version=9).SerializeToString()
+    return helper.make_model(
+        graph, opset_imports=opset, ir_version=9
+    ).SerializeToString()
 
 
 def write_models(folder: Path, **networks: bytes) -> Path:
