@@ -1,0 +1,20 @@
+"""Painted streets: a 1940s neighbourhood with exact truth for every photo of it."""
+
+from nostalgin_core.scenes.catalogue import catalogue_rows, photo_name
+from nostalgin_core.scenes.photograph import photograph
+from nostalgin_core.scenes.street import Lot, Neighbourhood, PaintedBlock, neighbourhood
+from nostalgin_core.scenes.truth import PaintedPhoto, TrueFacade, TrueOccluder, Truth
+
+__all__ = [
+    "Lot",
+    "Neighbourhood",
+    "PaintedBlock",
+    "PaintedPhoto",
+    "TrueFacade",
+    "TrueOccluder",
+    "Truth",
+    "catalogue_rows",
+    "neighbourhood",
+    "photo_name",
+    "photograph",
+]
