@@ -65,9 +65,8 @@ def _building(
     showing: Mapping[str, Sequence[str]],
     photos: Mapping[str, Mapping[str, Any]],
 ) -> Json:
-    own = [
-        fronts[wall.front_id] for wall in _fronts(building) if wall.front_id in fronts
-    ]
+    names = [wall.front_id for wall in building.walls if wall.front_id is not None]
+    own = [fronts[name] for name in names if name in fronts]
     worn = [wall.texture[0] for wall in building.walls if wall.texture]
     shown = [key for front in own for key in showing.get(front.front_id, ())]
     keys = list(dict.fromkeys([*worn, *shown]))
