@@ -121,12 +121,12 @@ def _box(mask: Bool[np.ndarray, "h w"]) -> tuple[int, int, int, int]:
 
 
 def view(
-    sample: Sample, rng: np.random.Generator, *, short_px: tuple[int, int] = (440, 660)
+    sample: Sample, rng: np.random.Generator, *, short_px: tuple[int, int] = (416, 600)
 ) -> Sample:
     """Scale, flip and cut a sample at random, as another camera would have.
 
     The short side falls between `short_px` (640 is what the network sees in use); at
-    most 704 pixels along each axis are kept, rounded to the multiples of 32 that the
+    most 672 pixels along each axis are kept, rounded to the multiples of 32 that the
     network takes.
     """
     height, width = sample.image.shape
@@ -134,7 +134,7 @@ def view(
     sx, sy = scale * np.exp(rng.uniform(-0.08, 0.08, 2))
     size = max(64, round(width * sx)), max(64, round(height * sy))
     image = cv2.resize(sample.image, size, interpolation=cv2.INTER_AREA)
-    keep_w, keep_h = (min(704, s // 32 * 32) for s in size)
+    keep_w, keep_h = (min(672, s // 32 * 32) for s in size)
     x0 = int(rng.integers(size[0] - keep_w + 1))
     y0 = int(rng.integers(size[1] - keep_h + 1))
     flipped = rng.random() < 0.5
