@@ -61,6 +61,7 @@ _DAMAGE: Final = (
     OverflowError,
     struct.error,
     zlib.error,
+    Image.DecompressionBombError,
 )
 
 _ORIENTATION_TAG: Final = 0x0112

@@ -109,9 +109,9 @@ def test_deep_gray_is_scaled_by_the_depth_that_was_used(
 def test_a_deep_negative_is_told_by_its_tag() -> None:
     deep = _street().astype(np.uint16) * 257
     data = _bytes(Image.fromarray(65535 - deep), "TIFF", tiffinfo={262: 0})
-    image = _decoded(data).image
-    # The writer may turn the pixels itself: either way dark stays dark.
-    assert abs(np.corrcoef(image.ravel(), _street().ravel())[0, 1]) > 0.99
+    np.testing.assert_allclose(
+        _decoded(data).image.astype(int), _street().astype(int), atol=1
+    )
 
 
 def test_floats_are_stretched_over_their_range() -> None:
