@@ -27,22 +27,28 @@ from nostalgin_core.scenes import (
     relief,
     surface,
     viewpoint,
+)
+from nostalgin_core.scenes import (
     wall as masonry,
 )
 from nostalgin_core.scenes.catalogue import photo_name
+from nostalgin_core.scenes.front import FrontStyle
 from nostalgin_core.scenes.lens import Camera
 from nostalgin_core.scenes.sprite import Sprite
-from nostalgin_core.scenes.street import OUTWARD, Lot, Neighbourhood, PaintedBlock, Wall
+from nostalgin_core.scenes.street import Lot, Neighbourhood, PaintedBlock, Wall
 from nostalgin_core.scenes.surface import Canvas, Panel
 from nostalgin_core.scenes.truth import PaintedPhoto, TrueFacade, TrueOccluder, Truth
 
 SUPER = 2  # samples a pixel and axis
-PX_PER_M = 40.0
+PX_PER_M = 40.0  # of a texture: what a tax photo resolves
 FINE_M = 55.0  # beyond it, fronts wear coarser textures
 SOFT_PX = 0.62  # the lens's point spread at 560 pixels' width
 LEAST_SHARE = 0.0012  # of the frame, for a front to count as shown
 BLANK = -2  # the label of party walls
 Plane = Float[np.ndarray, "_ _"]  # shapes differ: photo, supersampled, sprite
+
+Wear = Callable[[FrontStyle], Gray | None]
+Clad = tuple[Wall, Callable[[], Gray]]
 
 texture_of = functools.lru_cache(maxsize=256)(front.paint)
 
@@ -55,8 +61,13 @@ def photograph(
     shape: tuple[int, int] = (840, 560),
     view: int = 0,
     camera: Camera | None = None,
+    wear: Wear | None = None,
 ) -> PaintedPhoto:
-    """Take one photo of a lot; the camera is chosen where none is given."""
+    """Take one photo of a lot.
+
+    The camera is chosen where none is given. `wear` may give a front another texture
+    than its own, of about the same aspect.
+    """
     blocks = [*neighbourhood.blocks, *neighbourhood.around]
     boxes = [block.corner_m for block in blocks]
     camera = camera or viewpoint.choose(rng, lot, boxes, shape=shape)
@@ -68,7 +79,8 @@ def photograph(
         truth = Truth(camera, (), (), nothing, text, frame)
         return PaintedPhoto(photo_name(lot, view), fogged, truth)
     fine = magnified(camera)
-    canvas, walls = build(rng, fine, blocks, (SUPER * shape[0], SUPER * shape[1]))
+    size = (SUPER * shape[0], SUPER * shape[1])
+    canvas, walls = build(rng, fine, blocks, size, wear=wear)
     sprites = dress(rng, fine, canvas.tone.shape, lot, blocks, text=text)
     light, shares, through = composite(canvas, sprites)
     hole = film.punch(rng, shape) if rng.random() < 0.12 else None
@@ -101,9 +113,12 @@ def build(
     camera: Camera,
     blocks: list[PaintedBlock],
     shape: tuple[int, int],
-) -> tuple[Canvas, list[Wall]]:
-    """Draw all walls, the ground and the sky; the label of a front is its place in
-    the returned list.
+    *,
+    wear: Wear | None,
+) -> tuple[Canvas, list[Clad]]:
+    """Draw all walls, the ground and the sky.
+
+    Returns the fronts that show, with what they wear, in the order of their labels.
     """
     canvas = surface.empty(shape)
     standing = [
@@ -113,11 +128,12 @@ def build(
         for wall in lot.walls
         if faces(camera, wall, shape)
     ]
-    walls: list[Wall] = []
+    walls: list[Clad] = []
     for away, wall in sorted(standing, key=lambda item: item[0]):
         label = len(walls) if wall.style else BLANK
-        if surface.draw(canvas, camera, panel(wall, label), dressing(wall, away)):
-            walls.extend([wall] if wall.style else [])
+        cloth = dressing(wall, away, wear)
+        if surface.draw(canvas, camera, panel(wall, label), cloth):
+            walls.extend([(wall, cloth)] if wall.style else [])
     ground.lay(rng, canvas, camera, [block.corner_m for block in blocks])
     haze(rng, canvas)
     ground.sky(rng, canvas)
@@ -130,11 +146,14 @@ def distance(camera: Camera, wall: Wall) -> float:
     return float(np.linalg.norm(ends - camera.eye_m[:2], axis=1).min())
 
 
-def dressing(wall: Wall, away_m: float) -> Callable[[], Gray]:
+def dressing(wall: Wall, away_m: float, wear: Wear | None) -> Callable[[], Gray]:
     """Say what a wall wears: its painted front, coarser far away, or common brick."""
     if wall.style is None:
         kind = int(abs(wall.start_m[0] * 7 + wall.start_m[1] * 13)) % 7
         return functools.partial(party_wall, kind)
+    worn = wear(wall.style) if wear else None
+    if worn is not None:
+        return lambda: worn
     scale = PX_PER_M if away_m < FINE_M else PX_PER_M / 2
     return functools.partial(texture_of, wall.style, px_per_m=scale)
 
@@ -259,7 +278,7 @@ def true_facades(
     canvas: Canvas,
     through: Plane,
     camera: Camera,
-    walls: list[Wall],
+    walls: list[Clad],
     lot: Lot,
     inside: Plane,
     hole: Plane | None,
@@ -274,7 +293,7 @@ def true_facades(
     open_view = open_view if hole is None else open_view * (1 - hole)
     found: list[TrueFacade] = []
     for label in np.flatnonzero(counts > LEAST_SHARE * canvas.label.size):
-        wall = walls[label]
+        wall, cloth = walls[label]
         assert wall.front is not None
         assert wall.style is not None
         mine = (canvas.label == label).astype(np.float32)
@@ -286,7 +305,7 @@ def true_facades(
             measured(
                 camera,
                 wall,
-                texture_of(wall.style, px_per_m=PX_PER_M),
+                cloth(),
                 masks=(amodal & (open_view > 0.5), amodal, alpha.astype(np.float32)),
                 target=wall.front.front_id in own,
                 frame=frame,
@@ -331,7 +350,7 @@ def measured(
         width_m=width,
         height_m=wall.height_m,
         texture=texture,
-        m_per_px=1.0 / PX_PER_M,
+        m_per_px=width / texture.shape[1],
         photo_from_texture=unit @ surface.unit_from_texture(texture.shape),
         complete=complete,
     )
