@@ -125,9 +125,8 @@ def view(
 ) -> Sample:
     """Scale, flip and cut a sample at random, as another camera would have.
 
-    The short side falls between `short_px` (640 is what the network sees in use); at
-    most 672 pixels along each axis are kept, rounded to the multiples of 32 that the
-    network takes.
+    The short side falls between `short_px`; at most 672 pixels along each axis are
+    kept, in the multiples of 32 that the network takes.
     """
     height, width = sample.image.shape
     scale = rng.uniform(*short_px) / min(height, width)

@@ -42,6 +42,7 @@ class Schedule:
     batch: int = 2
     clip: float = 10.0
     decay: float = 0.995  # of the average: about the last 200 steps
+    short_px: tuple[int, int] = (416, 600)  # between which a photo's short side falls
     seed: int = 0
 
     def rate_at(self, step: int) -> float:
@@ -73,7 +74,10 @@ def begin(weights: dict[str, np.ndarray], schedule: Schedule) -> Run:
 
 
 def advance(
-    run: Run, schedule: Schedule, pools: Sequence[Sequence[Sample]], cut: list[Donor]
+    run: Run,
+    schedule: Schedule,
+    pools: Sequence[Sequence[Sample]],
+    cut: Sequence[Donor],
 ) -> dict[str, float]:
     """Take one step and return its mean losses.
 
@@ -85,7 +89,8 @@ def advance(
     sums: dict[str, float] = {}
     for turn in range(schedule.batch):
         rng = np.random.default_rng([schedule.seed, run.step, turn])
-        losses = run.network(*drawn(pools, cut, rng))
+        gray, answers = drawn(pools, cut, rng, short_px=schedule.short_px)
+        losses = run.network(gray, answers)
         torch.stack(list(losses.values())).sum().div(schedule.batch).backward()
         for name, loss in losses.items():
             sums[name] = sums.get(name, 0.0) + loss.item() / schedule.batch
@@ -108,12 +113,16 @@ def _average(run: Run, schedule: Schedule) -> None:
 
 
 def drawn(
-    pools: Sequence[Sequence[Sample]], cut: list[Donor], rng: np.random.Generator
+    pools: Sequence[Sequence[Sample]],
+    cut: Sequence[Donor],
+    rng: np.random.Generator,
+    *,
+    short_px: tuple[int, int],
 ) -> tuple[Tensor, list[dict[str, Tensor]]]:
     """Draw one photo, dress it up, and return it with what should be answered."""
     while True:
         pool = pools[int(rng.integers(len(pools)))]
-        sample = view(pool[int(rng.integers(len(pool)))], rng)
+        sample = view(pool[int(rng.integers(len(pool)))], rng, short_px=short_px)
         if rng.random() < 0.5:
             sample = paste(sample, cut, rng)
         answer = truth(sample)

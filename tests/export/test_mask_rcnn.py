@@ -1,0 +1,136 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+pytest.importorskip("torchvision")
+
+from export.copy_paste import donors  # noqa: E402
+from export.held_out import judged  # noqa: E402
+from export.mask_rcnn import MaskRCNN, freeze, load_weights  # noqa: E402
+from export.segmentation_data import fill  # noqa: E402
+from export.train_mask_rcnn import (  # noqa: E402
+    Schedule,
+    advance,
+    averaged,
+    begin,
+    drawn,
+    resume,
+    save,
+)
+from nostalgin_core.records import Box, Instance  # noqa: E402
+from tests.export.painted_segmentation import painted  # noqa: E402
+
+POOLS = [[painted(i) for i in range(2)], [painted(9)]]
+CUT = donors(POOLS[0])
+SHORT = Schedule(steps=8, rate=1e-3, warm_up=1, batch=1, short_px=(128, 160), seed=3)
+
+
+def _weights(seed: int = 0) -> dict[str, np.ndarray]:
+    torch.manual_seed(seed)
+    return {k: v.numpy() for k, v in MaskRCNN().state_dict().items()}
+
+
+def test_a_detection_is_a_box_a_label_a_score_and_a_mask() -> None:
+    network = load_weights(MaskRCNN(score=0.0, detections=7), _weights()).eval()
+    with torch.inference_mode():
+        boxes, labels, scores, masks = network(torch.full((1, 1, 128, 160), 90.0))
+    count = len(boxes)
+    assert 0 < count <= 7
+    assert boxes.shape == (count, 4)
+    assert labels.shape == scores.shape == (count,)
+    assert masks.shape == (count, 28, 28)
+    assert labels.min() >= 1
+    assert labels.max() <= 6
+    assert (boxes[:, 2] <= 160).all()
+    assert (boxes[:, 3] <= 128).all()
+
+
+def test_a_stem_that_saw_colour_sees_gray_the_same() -> None:
+    weights = _weights()
+    name = "backbone.body.stem.weight"
+    colour = np.random.default_rng(0).normal(size=(32, 3, 3, 3)).astype(np.float32)
+    network = load_weights(MaskRCNN(), weights | {name: colour})
+    gray = torch.rand(1, 1, 16, 16)
+    stem = network.backbone.body.stem
+    padded = torch.nn.functional.pad(gray, (0, 1, 0, 1)).repeat(1, 3, 1, 1)
+    want = torch.nn.functional.conv2d(padded, torch.from_numpy(colour), stem.bias, 2)
+    torch.testing.assert_close(stem(gray), want, atol=1e-5, rtol=1e-4)
+
+
+def test_training_lowers_the_loss_and_leaves_what_is_frozen() -> None:
+    run = begin(_weights(), SHORT)
+    before = [p.clone() for p in run.network.backbone.body.stem.parameters()]
+
+    def loss() -> float:
+        torch.manual_seed(0)
+        seen = [np.random.default_rng([1, i]) for i in range(3)]
+        inputs = [drawn(POOLS, CUT, rng, short_px=(128, 160)) for rng in seen]
+        with torch.no_grad():
+            return sum(float(sum(run.network(*i).values())) for i in inputs)
+
+    first = loss()
+    for _ in range(SHORT.steps):
+        advance(run, SHORT, POOLS, CUT)
+    assert loss() < 0.8 * first
+    for old, new in zip(
+        before, run.network.backbone.body.stem.parameters(), strict=True
+    ):
+        assert torch.equal(old, new)
+
+
+def test_a_run_that_was_cut_off_ends_where_the_whole_one_does(tmp_path: Path) -> None:
+    whole, parts = begin(_weights(), SHORT), begin(_weights(), SHORT)
+    for _ in range(4):
+        advance(whole, SHORT, POOLS, CUT)
+    for _ in range(2):
+        advance(parts, SHORT, POOLS, CUT)
+    save(parts, tmp_path / "last.pt")
+    parts = resume(tmp_path / "last.pt", SHORT)
+    for _ in range(2):
+        advance(parts, SHORT, POOLS, CUT)
+    assert parts.step == whole.step == 4
+    for name, value in whole.average.items():
+        assert torch.equal(value, parts.average[name]), name
+
+
+def test_the_rate_rises_then_falls_to_a_hundredth() -> None:
+    schedule = Schedule(steps=100, rate=1.0, warm_up=10)
+    rates = [schedule.rate_at(i) for i in range(101)]
+    assert rates[0] == pytest.approx(0.1, rel=0.01)
+    assert max(rates) > 0.95
+    assert rates[9:] == sorted(rates[9:], reverse=True)
+    assert rates[-1] == pytest.approx(0.01)
+
+
+def test_the_average_of_a_run_can_be_asked() -> None:
+    run = begin(_weights(), SHORT)
+    advance(run, SHORT, POOLS, CUT)
+    with torch.inference_mode():
+        assert len(averaged(run)(torch.full((1, 1, 64, 64), 90.0))) == 4
+
+
+def test_what_is_frozen_has_no_gradient() -> None:
+    network = MaskRCNN()
+    freeze(network)
+    learning = {n for n, p in network.named_parameters() if p.requires_grad}
+    assert not any("stem" in n or "body.blocks.0." in n for n in learning)
+    assert any("blocks.16." in n for n in learning)
+
+
+def test_the_labels_themselves_are_judged_perfect() -> None:
+    sample = painted()
+    shape = sample.image.shape
+    hidden = np.any([fill(t.polygon, shape) for t in sample.things if t.layer], axis=0)
+    instances = []
+    for thing in sample.things:
+        mask = fill(thing.polygon, shape)
+        mask = mask & ~hidden if thing.layer == 0 else mask
+        whole = Box(0, 0, shape[1], shape[0])
+        instances.append(Instance(thing.category, 1.0, whole, mask.astype(np.float32)))
+    row = judged(sample, instances)
+    assert (row["precision"], row["recall"], row["l1"]) == (1, 1, 0)
+    assert row["occluders"] == 1
+    assert row["fronts"] == [1, 1]
+    assert judged(sample, instances[1:])["targets"][0] < 0.5
