@@ -1,236 +1,69 @@
 """All stages as a plain loop: the oracle that the pipeline must agree with.
 
-No Beam, no store, no worker: one photo after the other, in memory. What the pipeline
-writes for a photo equals what this loop returns for it.
+No Beam, no store, no worker: one photo after the other, then one block, in memory. What
+the pipeline writes equals what this loop returns, byte for byte.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-import numpy as np
-
-from nostalgin_core import (
-    assign,
-    atlas,
-    block,
-    corner,
-    evidence,
-    gltf,
-    inpaint,
-    matte,
-    mesh,
-    photo,
-    picture,
-    quantise,
-    rectify,
-    segment,
-)
-from nostalgin_core.records import (
-    Assignment,
-    Block,
-    Elevation,
-    Facade,
-    Front,
-    Instance,
-    Matted,
-    Mesh,
-    Photo,
-    Placard,
-    Rejection,
-    Seen,
-)
-
-STAGES = ("photo", "segment", "placard", "matte", "rectify", "inpaint")
-
-
-@dataclass(frozen=True, slots=True)
-class Networks:
-    """The callables that the stages are given. Without `read`, no placard is read."""
-
-    segment: Callable[..., Any]
-    inpaint: Callable[..., Any]
-    read: Callable[..., Any] | None = None
+from nostalgin_core import quantise, settle, steps
+from nostalgin_core.records import Front, Photo, Rejection, Seen
+from nostalgin_core.settle import Settled
+from nostalgin_core.steps import Networks, Stages
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Reconstruction:
-    """Everything the stages made of one photo, as far as they came."""
+class Rebuilt:
+    """A block as it was rebuilt from photos."""
 
-    photo: Photo | None = None
-    instances: tuple[Instance, ...] = ()
-    placard: Placard | None = None
-    matted: Matted | None = None
-    rectified: tuple[Elevation, ...] = ()
-    elevations: tuple[Elevation, ...] = ()
-    rejections: tuple[Rejection, ...] = field(default=())
-
-
-def board(instances: tuple[Instance, ...]) -> Instance | None:
-    """Choose the placard that the network is surest of."""
-    boards = [one for one in instances if one.category == "placard"]
-    return max(boards, key=lambda one: one.score, default=None)
-
-
-def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, Any]]:
-    """Yield each stage's word and its result, and end with a photo's rejection.
-
-    A caller that wants to know what a stage costs looks at its own clock between two
-    results. A placard that can't be read stops nothing.
-    """
-    picture = photo.decode(data, name=name)
-    yield "photo", picture
-    if isinstance(picture, Rejection):
-        return
-    instances = segment.segment(picture, networks.segment)
-    if isinstance(instances, Rejection):
-        yield "segment", instances
-        return
-    instances = quantise.instances(instances)
-    yield "segment", instances
-    if networks.read is not None:
-        from nostalgin_core import placard
-
-        yield "placard", placard.read(picture, board(instances), networks.read)
-    matted = matte.matte(picture, instances)
-    if isinstance(matted, Rejection):
-        yield "matte", matted
-        return
-    matted = quantise.matted(matted)
-    yield "matte", matted
-    rectified = tuple(map(rounded, rectify.rectify(picture, matted)))
-    yield "rectify", rectified
-    views = [one for one in rectified if isinstance(one, Elevation)]
-    yield "inpaint", tuple(inpaint.inpaint(one, networks.inpaint) for one in views)
-
-
-def rounded(one: Elevation | Rejection) -> Elevation | Rejection:
-    """Round an elevation's alpha, and pass a rejection on."""
-    return one if isinstance(one, Rejection) else quantise.elevation(one)
-
-
-def gather(results: Iterator[tuple[str, Any]]) -> Reconstruction:
-    """Collect the results of `steps` into one record."""
-    made: dict[str, Any] = {}
-    rejections: list[Rejection] = []
-    for stage, result in results:
-        if isinstance(result, Rejection):
-            rejections.append(result)
-        elif stage == "rectify":
-            rejections += [one for one in result if isinstance(one, Rejection)]
-            made["rectified"] = tuple(o for o in result if isinstance(o, Elevation))
-        else:
-            made[FIELD.get(stage, stage)] = result
-    return Reconstruction(**made, rejections=tuple(rejections))
-
-
-FIELD = {"segment": "instances", "matte": "matted", "inpaint": "elevations"}
-
-
-def photograph(data: bytes, networks: Networks, *, name: str) -> Reconstruction:
-    """Take one photo through every stage, from its bytes to its elevations."""
-    return gather(steps(data, networks, name=name))
-
-
-def seen(key: str, facade: Facade, view: Elevation) -> Seen:
-    """Sum up a facade in the numbers that `assign` weighs."""
-    somewhere = np.count_nonzero(view.evidence != evidence.NOTHING)
-    by_camera = (evidence.PHOTOGRAPHED, evidence.SOFT_EDGE)
-    photographed = np.count_nonzero(np.isin(view.evidence, by_camera))
-    return Seen(
-        photo=key,
-        facade=facade.index,
-        target=facade.target,
-        target_score=facade.target_score,
-        score=facade.score,
-        aspect=view.aspect,
-        aspect_sd=view.aspect_sd,
-        left_px=float(view.quad[:, 0].mean()),
-        area_px=float(facade.alpha.sum(dtype=np.float64)),
-        photographed=photographed / max(somewhere, 1),
-    )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Settled:
-    """A block whose facades have their fronts, and whose cuboids stand."""
-
-    fronts: tuple[Front, ...]  # with the corners that photographs told
-    assignments: tuple[Assignment, ...]
+    settled: Settled
+    glb: bytes
     rejections: tuple[Rejection, ...]
-    block: Block
-
-    def worn(self) -> tuple[tuple[str, int], ...]:
-        """List the facades that a wall wears: only these need inpainting."""
-        textures = {
-            wall.texture
-            for building in self.block.buildings
-            for wall in building.walls
-            if wall.texture is not None
-        }
-        return tuple(sorted(textures))
 
 
-def settle(
-    name: str,
+def rebuild(
+    block: str,
     fronts: Sequence[Front],
-    candidates: Mapping[str, Sequence[str]],
-    seen: Sequence[Seen],
-) -> Settled:
-    """Give a block's facades to its fronts, and raise its buildings.
-
-    `candidates` names for each photo, by key, the fronts that it may show.
-    """
-    two = assign.two_fronted(fronts, candidates, seen)
-    turned = corner.with_corners(fronts, two)
-    outcomes = assign.assign(turned, candidates, seen)
-    assignments = tuple(one for one in outcomes if isinstance(one, Assignment))
-    rejections = tuple(one for one in outcomes if isinstance(one, Rejection))
-    return Settled(
-        turned, assignments, rejections, raised(name, turned, assignments, seen)
-    )
-
-
-def raised(
-    name: str,
-    fronts: Sequence[Front],
-    assignments: Sequence[Assignment],
-    seen: Sequence[Seen],
-) -> Block:
-    """Raise a block's buildings from the proportions of the facades they wear."""
-    aspects = {(one.photo, one.facade): (one.aspect, one.aspect_sd) for one in seen}
-    return block.block(name, fronts, assignments, aspects)
-
-
-def model(
-    one: Block,
-    elevations: Mapping[tuple[str, int], Elevation],
+    photos: Mapping[str, tuple[bytes, Sequence[str]]],
+    networks: Networks,
     *,
-    table: Mapping[str, Sequence[str]],
     credit: str = "",
-) -> tuple[bytes, Mesh]:
-    """Make a block's GLB from its cuboids and the finished elevations they wear.
+) -> Rebuilt:
+    """Rebuild one block from photos, each with the ids of the fronts it may show.
 
-    Returns its bytes, and all its buildings as one mesh, to be measured.
+    Every facade is inpainted here, those that no wall wears too; a pipeline may leave
+    these out.
     """
-    pages = atlas.build(
-        {
-            (*wall.texture, wall.evidence): elevations[wall.texture]
-            for building in one.buildings
-            for wall in building.walls
-            if wall.texture is not None
-        }
+    made = {
+        name: steps.photograph(data, networks, name=name)
+        for name, (data, _) in sorted(photos.items())
+    }
+    seen = [each for one in made.values() for each in sums(one)]
+    candidates = {
+        one.photo.key: photos[name][1]
+        for name, one in made.items()
+        if one.photo is not None and one.rectified
+    }
+    settled = settle.settle(block, fronts, candidates, seen)
+    finished = {
+        (one.photo.key, view.facade): quantise.elevation(view)
+        for one in made.values()
+        if isinstance(one.photo, Photo)
+        for view in one.elevations
+    }
+    glb, _ = settle.model(
+        settled.block, finished, table=settle.table(settled), credit=credit
     )
-    meshes = [
-        (building.building_id, mesh.building(building, pages, number=number))
-        for number, building in enumerate(one.buildings)
+    photo_rejections = [each for one in made.values() for each in one.rejections]
+    return Rebuilt(settled, glb, (*photo_rejections, *settled.rejections))
+
+
+def sums(one: Stages) -> list[Seen]:
+    """Sum up every facade of a photo that has an elevation."""
+    if one.photo is None or one.matted is None:
+        return []
+    facades = {facade.index: facade for facade in one.matted.facades}
+    return [
+        steps.seen(one.photo.key, facades[view.facade], view) for view in one.rectified
     ]
-    data = gltf.glb(
-        one.block,
-        meshes,
-        colours=picture.colours(pages),
-        evidence=picture.evidence_key(pages),
-        table=table,
-        copyright=credit,
-    )
-    return data, mesh.joined([each for _, each in meshes])

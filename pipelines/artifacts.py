@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import pyarrow as pa
 
-from nostalgin_core import reconstruct
+from nostalgin_core import steps
 from nostalgin_core.records import (
     Elevation,
     Facade,
@@ -50,7 +50,7 @@ def rectified_table(
     for facade, view in zip(result.facades, views, strict=True):
         row = tables.to_row(view)
         if isinstance(view, Elevation):
-            row |= tables.to_row(reconstruct.seen(key, facade, view))
+            row |= tables.to_row(steps.seen(key, facade, view))
         rows.append(row)
     return pa.Table.from_pylist(rows, RECTIFIED)
 

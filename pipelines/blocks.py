@@ -11,9 +11,9 @@ import pyarrow as pa
 from apache_beam import pvalue
 from apache_beam.typehints.decorators import no_annotations
 
-from nostalgin_core import reconstruct
-from nostalgin_core.reconstruct import Settled
+from nostalgin_core import settle
 from nostalgin_core.records import Block, Building, Elevation, Rejection
+from nostalgin_core.settle import Settled
 from pipelines import tables
 from pipelines.attempt import Attempt, Outcome
 from pipelines.plan import BlockTask
@@ -109,7 +109,7 @@ def placed(grouped: tuple[str, dict[str, Iterable[Any]]]) -> list[Placed | Rejec
         if name in keys:
             candidates.setdefault(keys[name], []).append(front_id)
     seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
-    settled = reconstruct.settle(task.block, task.fronts, candidates, seen)
+    settled = settle.settle(task.block, task.fronts, candidates, seen)
     rejections = [named(one, names[one.key]) for one in settled.rejections]
     return [Placed(task, facades, settled), *rejections]
 
@@ -140,7 +140,7 @@ def only(one: Placed, done: set[tuple[str, int]]) -> Placed:
     before = one.settled
     kept = tuple(a for a in before.assignments if (a.photo, a.facade) in done)
     seen = tuple(ref.seen for ref in one.facades)
-    anew = reconstruct.raised(one.key, before.fronts, kept, seen)
+    anew = settle.raised(one.key, before.fronts, kept, seen)
     return replace(one, settled=replace(before, assignments=kept, block=anew))
 
 
@@ -154,7 +154,10 @@ def contents(one: Placed, bench: Bench) -> list[str]:
         bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
         for ref in one.worn()
     ]
-    return [json.dumps([one.key, one.task.credit, buildings, columns(one)]), *finished]
+    return [
+        json.dumps([one.key, one.task.credit, buildings, settle.table(one.settled)]),
+        *finished,
+    ]
 
 
 def walls(building: Building) -> list[dict[str, Any]]:
@@ -162,30 +165,11 @@ def walls(building: Building) -> list[dict[str, Any]]:
     return [tables.to_row(wall) for wall in building.walls]
 
 
-def columns(one: Placed) -> dict[str, list[str]]:
-    """Write what a click on a building tells, a row a building."""
-    fronts: dict[str, list[Any]] = {}
-    for front in one.settled.fronts:
-        fronts.setdefault(f"{front.block}-{front.lot}", []).append(front)
-    rows = [fronts.get(b.building_id, []) for b in one.block.buildings]
-    return {
-        "id": [b.building_id for b in one.block.buildings],
-        "lot": [own[0].lot if own else "" for own in rows],
-        "address": ["; ".join(address(front) for front in own) for own in rows],
-        "assumed": ["yes" if b.assumed else "no" for b in one.block.buildings],
-    }
-
-
-def address(front: Any) -> str:
-    """Write a front's address in one line."""
-    return f"{front.address} {front.street}".strip()
-
-
 def model(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
     views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
-    data, whole = reconstruct.model(
-        one.block, views, table=columns(one), credit=one.task.credit
+    data, whole = settle.model(
+        one.block, views, table=settle.table(one.settled), credit=one.task.credit
     )
     row = {
         "block": one.key,

@@ -15,10 +15,10 @@ from typing import Any, Final
 import cv2
 import numpy as np
 
-from nostalgin_core import reconstruct, rectify
+from nostalgin_core import rectify, steps
 from nostalgin_core.arrays import Gray, Lines
-from nostalgin_core.reconstruct import Networks, Reconstruction
 from nostalgin_core.records import Elevation, Facade, Instance, Photo, Rejection
+from nostalgin_core.steps import Networks, Stages
 from pipelines import draw, tables
 from pipelines.panel import panel
 
@@ -42,9 +42,7 @@ def explain(data: bytes, out: Path, networks: Networks, *, started: float) -> di
         Unreadable: if the bytes are no photo.
     """
     seconds: dict[str, float] = {"load": time.process_time() - started}
-    made = reconstruct.gather(
-        timed(reconstruct.steps(data, networks, name=NAME), seconds)
-    )
+    made = steps.gather(timed(steps.steps(data, networks, name=NAME), seconds))
     if made.photo is None:
         raise Unreadable(made.rejections[0].reason + ": " + made.rejections[0].detail)
     out.mkdir(parents=True, exist_ok=True)
@@ -78,7 +76,7 @@ def peak_rss_bytes() -> int:
     return peak if sys.platform == "darwin" else peak * KIB
 
 
-def written(made: Reconstruction, photo: Photo, out: Path) -> dict[str, Any]:
+def written(made: Stages, photo: Photo, out: Path) -> dict[str, Any]:
     """Write masks and elevations as PNGs, and tell their names and the numbers."""
     height, width = photo.image.shape
     facades = made.matted.facades if made.matted else ()
@@ -143,9 +141,7 @@ def finite(value: Any) -> Any:
     return None if undefined else value
 
 
-def occluder_entries(
-    made: Reconstruction, photo: Photo, out: Path
-) -> list[dict[str, Any]]:
+def occluder_entries(made: Stages, photo: Photo, out: Path) -> list[dict[str, Any]]:
     """Write every occluder's mask: as matted, or as the network left it."""
     if made.matted is not None:
         found = [(one.category, one.score, one.mask) for one in made.matted.occluders]
@@ -182,7 +178,7 @@ def saved(out: Path, name: str, image: np.ndarray) -> str:
     return f"{name}.png"
 
 
-def pictures(made: Reconstruction, out: Path) -> None:
+def pictures(made: Stages, out: Path) -> None:
     """Write what is for looking at alone: evidence in colours, lines, the panel."""
     if made.photo is None:
         return

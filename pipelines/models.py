@@ -47,7 +47,7 @@ class Models:
 
     def networks(self, *, placard: bool) -> Any:
         """Load everything that the plain loop is given."""
-        from nostalgin_core.reconstruct import Networks
+        from nostalgin_core.steps import Networks
 
         read = reader() if placard else None
         return Networks(self.load("segment"), self.inpainter(), read)

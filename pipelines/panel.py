@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 
 from nostalgin_core.arrays import Corners, Lines
-from nostalgin_core.reconstruct import Reconstruction
 from nostalgin_core.records import Elevation, Matted, Photo
+from nostalgin_core.steps import Stages
 from pipelines import draw
 from pipelines.draw import Colour
 
@@ -18,7 +18,7 @@ WHITE = 255
 Tile = tuple[str, Colour]
 
 
-def panel(made: Reconstruction, lines: Lines) -> Colour:
+def panel(made: Stages, lines: Lines) -> Colour:
     """Set the stages side by side: as many tiles as the photo got to.
 
     Input | facades | occluders | matte facades | matte occluders | lines by vanishing

@@ -15,9 +15,10 @@ import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
 
+from nostalgin_core import settle
 from nostalgin_core.records import Rejection, Seen
 from pipelines import tables
-from pipelines.blocks import Modelled, address, texture_of
+from pipelines.blocks import Modelled, texture_of
 from pipelines.stages import FacadeRef, PhotoRef
 from pipelines.store import Store, key_of
 from pipelines.versions import Versions
@@ -109,18 +110,14 @@ class BuildingRows:
         refs = {texture_of(ref): ref for ref in one.facades}
         scores = {(a.photo, a.facade): a.score for a in one.settled.assignments}
         for building in one.block.buildings:
-            own = [
-                front
-                for front in one.settled.fronts
-                if f"{front.block}-{front.lot}" == building.building_id
-            ]
+            own = settle.fronts_of(one.settled, building.building_id)
             worn = [w.texture for w in building.walls if w.texture is not None]
             worn = list(dict.fromkeys(worn))
             yield {
                 "block": one.key,
                 "building_id": building.building_id,
                 "lot": own[0].lot if own else "",
-                "address": "; ".join(address(front) for front in own),
+                "address": "; ".join(settle.address(front) for front in own),
                 "height_m": building.height_m,
                 "footprint_m": building.footprint_m.ravel().tolist(),
                 "assumed": building.assumed,

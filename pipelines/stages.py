@@ -16,7 +16,6 @@ from apache_beam import pvalue
 from apache_beam.typehints.decorators import no_annotations
 
 from nostalgin_core import inpaint, matte, photo, quantise, rectify, segment
-from nostalgin_core.reconstruct import rounded
 from nostalgin_core.records import (
     Elevation,
     Instance,
@@ -24,6 +23,7 @@ from nostalgin_core.records import (
     Rejection,
     Seen,
 )
+from nostalgin_core.steps import rounded
 from pipelines import artifacts, tables
 from pipelines.attempt import Attempt, Outcome
 from pipelines.models import Models, Once

@@ -23,9 +23,10 @@ def photo(seed: int = 0, *, suffix: str = ".png") -> bytes:
     for quad in (LEFT, RIGHT):
         across, up = 4 + int(rng.integers(3)), 5 + int(rng.integers(3))
         wall = np.full((400, 200), 150 + rng.integers(30), np.uint8)
-        for x in np.linspace(16, 200, across, endpoint=False):
-            for y in np.linspace(20, 400, up, endpoint=False):
-                wall[int(y) : int(y) + 40, int(x) : int(x) + 20] = rng.integers(20, 70)
+        for y in np.linspace(20, 400, up, endpoint=False).astype(int):
+            wall[y - 14 : y - 8] = 240  # a string course below each row of windows
+            for x in np.linspace(12, 200, across, endpoint=False).astype(int):
+                wall[y : y + 36, x : x + 22] = rng.integers(20, 70)
         corners = np.array([[0, 0], [200, 0], [200, 400], [0, 400]], np.float32)
         matrix = cv2.getPerspectiveTransform(corners, quad)
         warped = cv2.warpPerspective(wall, matrix, SIZE[::-1])
@@ -104,3 +105,38 @@ def write_models(folder: Path, **networks: bytes) -> Path:
         lock[f"{name}.onnx"] = hashlib.sha256(data).hexdigest()
     (folder / "models.lock").write_text(json.dumps(lock))
     return folder
+
+
+def inpaint_network() -> bytes:
+    """Make a network that answers with its guess, a little darker."""
+    nodes = [
+        helper.make_node("Sub", ["guess", "shade"], ["mixed"]),
+        helper.make_node("Add", ["image", "hole"], ["unused"]),
+    ]
+    constants = {"shade": np.array(0.1, np.float32)}
+    inputs = ["image", "hole", "guess"]
+    return network(nodes, constants, inputs, {"mixed": 1, "unused": 1})
+
+
+CATALOGUE = """photo,block,lot,street,address,width_m
+5_1.png,5,1,Elm Street,1,10
+5_2.jpg,5,2,Elm Street,3,8
+5_2a.png,5,2,Elm Street,3,8
+,5,3,Elm Street,5,9
+6_1.png,6,1,Oak Street,2,7
+"""
+
+
+def write_city(folder: Path) -> Path:
+    """Write photos of two blocks, one lot without a photo, and their manifest."""
+    from pipelines.index import index
+
+    photos = folder / "photos"
+    photos.mkdir(parents=True)
+    for seed, name in enumerate(("5_1.png", "5_2.jpg", "5_2a.png", "6_1.png")):
+        (photos / name).write_bytes(photo(seed, suffix=Path(name).suffix))
+    (folder / "list.csv").write_text(CATALOGUE)
+    index(photos, folder / "list.csv", str(folder / "city"))
+    models = {"segment": segment_network(), "inpaint": inpaint_network()}
+    write_models(folder / "models", **models)
+    return folder / "city"

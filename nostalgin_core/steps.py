@@ -1,0 +1,134 @@
+"""One photo through its stages, from its bytes to its elevations."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from nostalgin_core import (
+    evidence,
+    inpaint,
+    matte,
+    photo,
+    quantise,
+    rectify,
+    segment,
+)
+from nostalgin_core.records import (
+    Elevation,
+    Facade,
+    Instance,
+    Matted,
+    Photo,
+    Placard,
+    Rejection,
+    Seen,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Networks:
+    """The callables that the stages are given. Without `read`, no placard is read."""
+
+    segment: Callable[..., Any]
+    inpaint: Callable[..., Any]
+    read: Callable[..., Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stages:
+    """Everything the stages made of one photo, as far as they came."""
+
+    photo: Photo | None = None
+    instances: tuple[Instance, ...] = ()
+    placard: Placard | None = None
+    matted: Matted | None = None
+    rectified: tuple[Elevation, ...] = ()
+    elevations: tuple[Elevation, ...] = ()
+    rejections: tuple[Rejection, ...] = field(default=())
+
+
+def board(instances: tuple[Instance, ...]) -> Instance | None:
+    """Choose the placard that the network is surest of."""
+    boards = [one for one in instances if one.category == "placard"]
+    return max(boards, key=lambda one: one.score, default=None)
+
+
+def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, Any]]:
+    """Yield each stage's word and its result, and end with a photo's rejection.
+
+    A caller that wants to know what a stage costs looks at its own clock between two
+    results. A placard that can't be read stops nothing.
+    """
+    picture = photo.decode(data, name=name)
+    yield "photo", picture
+    if isinstance(picture, Rejection):
+        return
+    instances = segment.segment(picture, networks.segment)
+    if isinstance(instances, Rejection):
+        yield "segment", instances
+        return
+    instances = quantise.instances(instances)
+    yield "segment", instances
+    if networks.read is not None:
+        from nostalgin_core import placard  # noqa: PLC0415
+
+        yield "placard", placard.read(picture, board(instances), networks.read)
+    matted = matte.matte(picture, instances)
+    if isinstance(matted, Rejection):
+        yield "matte", matted
+        return
+    matted = quantise.matted(matted)
+    yield "matte", matted
+    rectified = tuple(map(rounded, rectify.rectify(picture, matted)))
+    yield "rectify", rectified
+    views = [one for one in rectified if isinstance(one, Elevation)]
+    yield "inpaint", tuple(inpaint.inpaint(one, networks.inpaint) for one in views)
+
+
+def rounded(one: Elevation | Rejection) -> Elevation | Rejection:
+    """Round an elevation's alpha, and pass a rejection on."""
+    return one if isinstance(one, Rejection) else quantise.elevation(one)
+
+
+def gather(results: Iterator[tuple[str, Any]]) -> Stages:
+    """Collect the results of `steps` into one record."""
+    made: dict[str, Any] = {}
+    rejections: list[Rejection] = []
+    for stage, result in results:
+        if isinstance(result, Rejection):
+            rejections.append(result)
+        elif stage == "rectify":
+            rejections += [one for one in result if isinstance(one, Rejection)]
+            made["rectified"] = tuple(o for o in result if isinstance(o, Elevation))
+        else:
+            made[FIELD.get(stage, stage)] = result
+    return Stages(**made, rejections=tuple(rejections))
+
+
+FIELD = {"segment": "instances", "matte": "matted", "inpaint": "elevations"}
+
+
+def photograph(data: bytes, networks: Networks, *, name: str) -> Stages:
+    """Take one photo through every stage, from its bytes to its elevations."""
+    return gather(steps(data, networks, name=name))
+
+
+def seen(key: str, facade: Facade, view: Elevation) -> Seen:
+    """Sum up a facade in the numbers that `assign` weighs."""
+    somewhere = np.count_nonzero(view.evidence != evidence.NOTHING)
+    by_camera = (evidence.PHOTOGRAPHED, evidence.SOFT_EDGE)
+    photographed = np.count_nonzero(np.isin(view.evidence, by_camera))
+    return Seen(
+        photo=key,
+        facade=facade.index,
+        target=facade.target,
+        target_score=facade.target_score,
+        score=facade.score,
+        aspect=view.aspect,
+        aspect_sd=view.aspect_sd,
+        left_px=float(view.quad[:, 0].mean()),
+        area_px=float(facade.alpha.sum(dtype=np.float64)),
+        photographed=photographed / max(somewhere, 1),
+    )

@@ -1,0 +1,172 @@
+"""The pipeline on a painted city: same bytes however it is run, and nothing lost."""
+
+import hashlib
+import json
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+from rich.console import Console
+
+from nostalgin_core import reconstruct
+from nostalgin_core.steps import Networks
+from pipelines import manifest
+from pipelines.build import Report, build
+from pipelines.models import Models
+from pipelines.options import options
+from pipelines.store import Store
+from pipelines.voice import Voice
+from tests.pipelines import painted
+
+TWO_PROCESSES = ("--direct_num_workers=2",)
+
+
+def built(city: Path, beam: Sequence[str] = (), shard: str = "") -> Report:
+    models = str(city.parent / "models")
+    chosen = options(str(city), models=models, beam=beam, shard=shard)
+    return build(chosen, Voice(Console(quiet=True)))
+
+
+def tree(city: Path) -> dict[str, str]:
+    """Hash every file of a city, but for the one that tells the time."""
+    return {
+        path.relative_to(city).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(city.rglob("*"))
+        if path.is_file() and path.name != "run.json"
+    }
+
+
+def artifacts(city: Path, stage: str) -> list[Path]:
+    return sorted((city / "artifacts" / stage).rglob("*.parquet"))
+
+
+def copied(city: Path, folder: Path) -> Path:
+    """Copy an unbuilt city with its networks; the photos stay where they are."""
+    shutil.copytree(city.parent / "models", folder / "models")
+    fresh = folder / "city"
+    fresh.mkdir()
+    for name in (manifest.CSV, manifest.PARQUET):
+        shutil.copy(city / name, fresh / name)
+    return fresh
+
+
+@pytest.fixture(scope="module")
+def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A painted city that was built once, in this process."""
+    city = painted.write_city(tmp_path_factory.mktemp("painted"))
+    built(city)
+    return city
+
+
+def test_every_photo_gives_facades_and_every_lot_a_building(city: Path) -> None:
+    report = built(city)
+    assert (report.photos, report.rejected_photos) == (4, 0)
+    assert (report.blocks, report.buildings, report.assumed) == (2, 4, 1)
+
+
+def test_two_processes_write_the_same_bytes(city: Path, tmp_path: Path) -> None:
+    other = copied(city, tmp_path)
+    built(other, TWO_PROCESSES)
+    assert tree(other) == tree(city)
+
+
+def test_a_second_run_makes_nothing_and_changes_nothing(city: Path) -> None:
+    before = tree(city)
+    written = {path: path.stat().st_mtime_ns for path in artifacts(city, "")}
+    built(city)
+    assert tree(city) == before
+    assert {p: p.stat().st_mtime_ns for p in artifacts(city, "")} == written
+
+
+def test_a_run_that_was_cut_off_goes_on_to_the_same_bytes(
+    city: Path, tmp_path: Path
+) -> None:
+    other = copied(city, tmp_path)
+    shutil.copytree(city / "artifacts", other / "artifacts")
+    for stage in ("matte", "rectify", "inpaint"):
+        for path in artifacts(other, stage)[::2]:
+            path.unlink()
+    shutil.rmtree(other / "artifacts" / "block")
+    found = {p: p.stat().st_mtime_ns for p in artifacts(other, "segment")}
+    built(other)
+    assert tree(other) == tree(city)
+    assert {p: p.stat().st_mtime_ns for p in artifacts(other, "segment")} == found
+
+
+def test_shards_and_one_last_run_equal_one_run(city: Path, tmp_path: Path) -> None:
+    other = copied(city, tmp_path)
+    parts = [built(other, shard=f"{k}/3") for k in (1, 2, 3)]
+    assert sum(part.photos for part in parts) == 4
+    assert not (other / "CURRENT").exists()
+    made = {path: path.stat().st_mtime_ns for path in artifacts(other, "")}
+    built(other)
+    assert {p: p.stat().st_mtime_ns for p in artifacts(other, "")} == made
+    same = tree(other)
+    assert {name: same[name] for name in tree(city)} == tree(city)
+
+
+def test_the_pipeline_equals_the_plain_loop(city: Path) -> None:
+    rows = [r for r in manifest.read(Store(str(city))).rows if r.front is not None]
+    mine = [row for row in rows if row.front and row.front.block == "5"]
+    photos: dict[str, tuple[bytes, list[str]]] = {}
+    for row in mine:
+        if row.photo and row.front:
+            data = (Path(row.root) / row.photo).read_bytes()
+            photos.setdefault(row.photo, (data, []))[1].append(row.front.front_id)
+    fronts = list({row.front.front_id: row.front for row in mine if row.front}.values())
+    models = Models(str(city.parent / "models"))
+    networks = Networks(models.load("segment"), models.load("inpaint"))
+    oracle = reconstruct.rebuild("5", fronts, photos, networks)
+    glbs = [pq.read_table(p).to_pylist()[0] for p in artifacts(city, "block")]
+    assert {row["block"]: row["glb"] for row in glbs}["5"] == oracle.glb
+
+
+def test_the_best_of_several_photos_is_worn_and_the_others_are_kept(city: Path) -> None:
+    assert len(artifacts(city, "rectify")) == 4
+    assert len(artifacts(city, "inpaint")) == 3
+
+
+def test_clock_times_stand_in_one_file_alone(city: Path) -> None:
+    run = (city / "CURRENT").read_text().strip()
+    told = json.loads((city / "runs" / run / "run.json").read_text())
+    assert set(told["stages"]) >= {"photo", "segment", "matte", "rectify", "inpaint"}
+    assert told["stages"]["segment"]["made"] == 4
+    assert "milliseconds" in told["stages"]["rectify"]
+
+
+BAD_FILES = {
+    "truncated.jpg": painted.photo(1, suffix=".jpg")[:2000],
+    "empty.jpg": b"",
+    "words.jpg": b"this is no photograph at all\n" * 9,
+    "huge.png": b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
+    + (60_000).to_bytes(4, "big") * 2
+    + b"\x08\x00\x00\x00\x00\x9d\x19\xd5\x9b\x00\x00\x00\x00",
+}
+
+
+def test_bad_files_are_rejected_by_name_and_harm_nothing(
+    city: Path, tmp_path: Path
+) -> None:
+    other = copied(city, tmp_path)
+    for name, data in BAD_FILES.items():
+        (city.parent / "photos" / name).write_bytes(data)
+    rows = pq.read_table(other / manifest.PARQUET).to_pylist()
+    good = next(row for row in rows if row["photo"])
+    bad = [*BAD_FILES, "missing.jpg", "../outside.jpg"]
+    rows += [good | {"photo": name} for name in bad]
+    manifest.write(Store(str(other)), rows)
+    report = built(other)
+    reasons = {row["key"]: row for row in report.rejections}
+    for name in [*BAD_FILES, "missing.jpg"]:
+        assert reasons[name]["stage"] in ("photo", "segment"), reasons
+        assert reasons[name]["reason"] != "crashed"
+    (row,) = [row for row in reasons.values() if row["stage"] == "manifest"]
+    assert row["key"].startswith("manifest.csv row")
+    assert "../outside.jpg" in row["detail"]
+    assert (report.blocks, report.buildings, report.assumed) == (2, 4, 1)
+    same = tree(other)
+    for name, digest in tree(city).items():
+        if name.startswith("artifacts"):
+            assert same[name] == digest, name
