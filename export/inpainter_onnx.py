@@ -1,0 +1,143 @@
+"""Write the trained inpainter as ONNX, of any size, and prove that it is the same.
+
+    python -m export.inpainter_onnx CHECKPOINT MODELS
+
+Weights are stored as float16 and cast on loading; all reckoning is in float32. Facts
+that a reader of the file needs lie inside it, as metadata.
+"""
+
+import argparse
+import hashlib
+import io
+import json
+import warnings
+from pathlib import Path
+
+import numpy as np
+import onnx
+import onnxruntime
+import torch
+from onnx import TensorProto, helper, numpy_helper
+from torch import Tensor, nn
+
+from export.inpainter import MULTIPLE, Generator
+
+STRIPS = 8  # of the attention: its score map is an eighth of the whole one
+TOLERANCE = 2e-2  # of the range -1 to 1: what float16 weights cost, about 1 gray level
+NAME = "inpaint.onnx"
+
+
+class Shipped(nn.Module):
+    """The generator as the pipeline calls it: one answer, attention in strips."""
+
+    def __init__(self, generator: Generator, *, strips: int = STRIPS) -> None:
+        """Wrap a trained generator."""
+        super().__init__()
+        self.generator = generator
+        self.strips = strips
+
+    def forward(self, image: Tensor, hole: Tensor, guess: Tensor) -> Tensor:
+        """Give the refined image alone."""
+        return self.generator(image, hole, guess, strips=self.strips)[1]
+
+
+def slim(model: onnx.ModelProto, *, least: int = 256) -> onnx.ModelProto:
+    """Store large weights as float16, each with a cast back in front of its use."""
+    casts = []
+    for weight in model.graph.initializer:
+        if weight.data_type != TensorProto.FLOAT or np.prod(weight.dims) < least:
+            continue
+        half = numpy_helper.to_array(weight).astype(np.float16)
+        name = weight.name
+        weight.CopyFrom(numpy_helper.from_array(half, f"{name}.half"))
+        casts.append(
+            helper.make_node("Cast", [f"{name}.half"], [name], to=TensorProto.FLOAT)
+        )
+    nodes = [*casts, *model.graph.node]
+    del model.graph.node[:]
+    model.graph.node.extend(nodes)
+    return model
+
+
+def export(
+    generator: Generator, *, strips: int = STRIPS, facts: dict[str, str]
+) -> bytes:
+    """Write a generator as ONNX with free height and width, multiples of 8."""
+    example = tuple(torch.rand(1, 1, 64, 96) for _ in range(3))
+    names = ["image", "hole", "guess"]
+    size = {2: "height", 3: "width"}
+    written = io.BytesIO()
+    with warnings.catch_warnings():
+        # The tracer warns of each comparison of sizes; parity at other sizes decides.
+        warnings.simplefilter("ignore")
+        torch.onnx.export(
+            Shipped(generator.eval(), strips=strips),
+            example,
+            written,
+            input_names=names,
+            output_names=["filled"],
+            dynamic_axes=dict.fromkeys([*names, "filled"], size),
+            opset_version=17,
+            dynamo=False,
+        )
+    model = slim(onnx.load_from_string(written.getvalue()))
+    helper.set_model_props(model, {"multiple": str(MULTIPLE), **facts})
+    onnx.checker.check_model(model)
+    return model.SerializeToString()
+
+
+def session(data: bytes) -> onnxruntime.InferenceSession:
+    """Open a model on one thread."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    return onnxruntime.InferenceSession(data, options, ["CPUExecutionProvider"])
+
+
+def parity(generator: Generator, data: bytes, shapes: list[tuple[int, int]]) -> float:
+    """Give the largest difference between torch and ONNX Runtime over some sizes."""
+    opened = session(data)
+    worst = 0.0
+    rng = np.random.default_rng(0)
+    for h, w in shapes:
+        image, guess = rng.uniform(-1, 1, (2, 1, 1, h, w)).astype(np.float32)
+        hole = np.zeros((1, 1, h, w), np.float32)
+        hole[..., h // 3 : h // 2, w // 4 : w // 2] = 1
+        guess = image * (1 - hole) + guess * hole
+        (ours,) = opened.run(None, {"image": image, "hole": hole, "guess": guess})
+        with torch.no_grad():
+            theirs = generator(*map(torch.from_numpy, (image, hole, guess)))[1].numpy()
+        worst = max(worst, float(np.abs(ours - theirs).max()))
+    return worst
+
+
+def lock(models: Path, name: str, data: bytes) -> None:
+    """Write a model and its SHA-256 beside it, other entries untouched."""
+    (models / name).write_bytes(data)
+    path = models / "models.lock"
+    entries = json.loads(path.read_text()) if path.exists() else {}
+    entries[name] = hashlib.sha256(data).hexdigest()
+    path.write_text(json.dumps(entries, indent=2, sort_keys=True) + "\n")
+
+
+def main() -> None:
+    """Export a checkpoint's averaged weights; fail if the two runtimes disagree."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("checkpoint", type=Path)
+    parser.add_argument("models", type=Path)
+    options = parser.parse_args()
+    state = torch.load(options.checkpoint, weights_only=True)
+    recipe = state["recipe"]
+    generator = Generator(width=recipe["width"], stride=recipe["stride"])
+    generator.load_state_dict(state["averaged"])
+    generator.eval()
+    facts = {"steps": str(state["step"]), "width": str(recipe["width"])}
+    data = export(generator, facts=facts)
+    off = parity(generator, data, [(64, 96), (128, 72), (200, 104)])
+    print(f"{len(data)} bytes, torch and ONNX Runtime differ by at most {off:.2e}")
+    if off > TOLERANCE:
+        raise ValueError(f"the export differs by {off}, more than {TOLERANCE}")
+    lock(options.models, NAME, data)
+
+
+if __name__ == "__main__":
+    main()
