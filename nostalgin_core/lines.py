@@ -22,7 +22,7 @@ MEDIAN_SPREAD = 0.33  # the paper's lambda
 EVEN_PX = 24.0  # about a window with its wall
 FLOOR = 6.0  # gray levels of contrast below which nothing is amplified fully
 CONTRAST = 60.0  # gray levels that one standard deviation becomes
-BLUR_PX = 0.8  # half of what grain and scan need; more rounds off window corners
+BLUR_PX = 0.6  # half of what grain and scan need; more rounds off window corners
 CHORD_PX = 4  # contour points on either side that give the direction at a point
 STRICT = (16, 4.0)  # k_s, t_alpha in degrees: where candidates are accumulated
 LOOSE = (8, 9.0)  # and where lines vote
@@ -72,7 +72,9 @@ def even_out(image: Gray, *, reach: float = EVEN_PX, floor: float = FLOOR) -> Gr
     return np.clip(level, 0, 255).astype(np.uint8)
 
 
-def edges(image: Gray, low: int, high: int) -> tuple[Mask, Points]:
+def edges(
+    image: Gray, low: int, high: int, *, where: Mask | None = None
+) -> tuple[Mask, Points]:
     """Find edge pixels, and where between pixels the edge runs.
 
     The gradient's magnitude is sampled one pixel to either side across the edge, and
@@ -84,6 +86,8 @@ def edges(image: Gray, low: int, high: int) -> tuple[Mask, Points]:
     dx = cv2.Sobel(smooth, cv2.CV_16S, 1, 0)
     dy = cv2.Sobel(smooth, cv2.CV_16S, 0, 1)
     mask = cv2.Canny(dx, dy, low, high, L2gradient=True) > 0
+    if where is not None:
+        mask &= where
     mask[[0, -1], :] = False
     mask[:, [0, -1]] = False
     magnitude = cv2.magnitude(dx.astype(np.float32), dy.astype(np.float32))
@@ -301,7 +305,7 @@ def fit(contours: Contours, straight: Bool[np.ndarray, " p"]) -> Lines:
     )
     for _ in range(CUTS):
         run = np.cumsum(breaks) - 1
-        centre, along, stray = _fit_runs(points, run)
+        _, _, stray = _fit_runs(points, run, rounds=1)
         far = np.abs(stray)
         first = np.flatnonzero(breaks)
         worst = np.maximum.reduceat(far, first)
@@ -324,33 +328,39 @@ def fit(contours: Contours, straight: Bool[np.ndarray, " p"]) -> Lines:
 
 
 def _fit_runs(
-    points: Points, run: Int[np.ndarray, " n"]
+    points: Points, run: Int[np.ndarray, " n"], *, rounds: int = 4
 ) -> tuple[Float[np.ndarray, "r 2"], Float[np.ndarray, "r 2"], Float[np.ndarray, " n"]]:
     """Fit all runs: a point on each line, its direction, each point's distance."""
     first = np.flatnonzero(np.diff(run, prepend=-1))
     weight = np.ones(len(points))
-    for _ in range(4):
+    x, y = points.T
+    for _ in range(rounds):
         total = np.add.reduceat(weight, first)
-        centre = np.add.reduceat(points * weight[:, None], first) / total[:, None]
-        away = points - centre[run]
-        xx, yy, xy = (
-            np.add.reduceat(weight * p, first)
-            for p in (away[:, 0] ** 2, away[:, 1] ** 2, away[:, 0] * away[:, 1])
-        )
-        angle = 0.5 * np.arctan2(2 * xy, xx - yy)
-        along = np.column_stack([np.cos(angle), np.sin(angle)])
-        stray = away[:, 1] * along[run, 0] - away[:, 0] * along[run, 1]
+        middle_x = np.add.reduceat(x * weight, first) / total
+        middle_y = np.add.reduceat(y * weight, first) / total
+        dx, dy = x - middle_x[run], y - middle_y[run]
+        wx, wy = weight * dx, weight * dy
+        xx, yy = np.add.reduceat(wx * dx, first), np.add.reduceat(wy * dy, first)
+        angle = 0.5 * np.arctan2(2 * np.add.reduceat(wx * dy, first), xx - yy)
+        cosine, sine = np.cos(angle), np.sin(angle)
+        stray = dy * cosine[run] - dx * sine[run]
         weight = np.maximum(1 - (stray / TUKEY_PX) ** 2, 1e-3) ** 2
-    return centre, along, stray
+    centre = np.column_stack([middle_x, middle_y])
+    return centre, np.column_stack([cosine, sine]), stray
 
 
 def detect(
-    image: Gray, *settings: tuple[int, float], spread: float = MEDIAN_SPREAD
+    image: Gray,
+    *settings: tuple[int, float],
+    where: Mask | None = None,
+    spread: float = MEDIAN_SPREAD,
 ) -> tuple[Float[np.ndarray, "_ 4"], ...]:
     """Find the lines of an image once for each pair of `k_s` and `t_alpha` in degrees.
 
     The contours are shared, since only the label of linear points depends on the pair.
+    Only edges inside `where` are followed.
     """
     image = even_out(image)
-    contours = link(*edges(image, *canny_thresholds(image, spread=spread)))
+    low, high = canny_thresholds(image, spread=spread)
+    contours = link(*edges(image, low, high, where=where))
     return tuple(fit(contours, linear(contours, k, t)) for k, t in settings)

@@ -16,6 +16,7 @@ from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
 STAGE = "rectify"
 MARGIN_PX = 2  # an outline's own lines lie just outside as often as inside
 LEAST_INSIDE = 0.5  # of a line
+HIDDEN = 0.5  # alpha up to which something else is what the camera saw
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
 LEAST_LINES = 3.0  # whose weights support a front's horizontal
 ASPECTS = (0.05, 20.0)
@@ -45,9 +46,11 @@ def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
     """Make one elevation, or one rejection, of each facade, in their order."""
     if not matted.facades:
         return ()
-    found = detect(photo)
-    signals = [signal(photo, found, facade.mask) for facade in matted.facades]
-    world, seen, method = orient(signals, vertical(photo, found, matted))
+    clear = [unhidden(facade) for facade in matted.facades]
+    anywhere = np.any(clear, axis=0)
+    found = detect(photo, anywhere)
+    signals = [signal(photo, found, mask) for mask in clear]
+    world, seen, method = orient(signals, vertical(signal(photo, found, anywhere)))
     results = []
     rank = 0
     for facade, has in zip(matted.facades, seen, strict=True):
@@ -59,9 +62,21 @@ def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
     return tuple(results)
 
 
-def detect(photo: Photo) -> tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]]:
-    """Find the photo's strict and loose lines, in photo pixels."""
-    strict, loose = lines.detect(photo.image, lines.STRICT, lines.LOOSE)
+def unhidden(facade: Facade) -> Mask:
+    """Tell where a line may speak for a front: on it and its outline, off occluders.
+
+    The outline of what stands before the front lies as close to the front as the
+    front's own, so holes grow by the margin and take it away.
+    """
+    hole = facade.amodal & (facade.alpha <= HIDDEN)
+    return vanish.grown(facade.amodal, MARGIN_PX) & ~vanish.grown(hole, MARGIN_PX)
+
+
+def detect(
+    photo: Photo, where: Mask
+) -> tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]]:
+    """Find the strict and the loose lines inside `where`, in photo pixels."""
+    strict, loose = lines.detect(photo.image, lines.STRICT, lines.LOOSE, where=where)
     return strict, loose
 
 
@@ -71,10 +86,9 @@ def signal(
     mask: Mask,
 ) -> Signal:
     """Pick the lines of a front: those with at least half their length in its mask."""
-    near = vanish.grown(mask, MARGIN_PX)
     strict, loose = found
-    strict = strict[vanish.inside(strict, near) >= LEAST_INSIDE]
-    omega = vanish.inside(loose, near)
+    strict = strict[vanish.inside(strict, mask) >= LEAST_INSIDE]
+    omega = vanish.inside(loose, mask)
     loose, omega = loose[omega >= LEAST_INSIDE], omega[omega >= LEAST_INSIDE]
     where = camera.centre(photo.frame), camera.prior_focal_px(photo.frame)
     return Signal(
@@ -85,14 +99,8 @@ def signal(
     )
 
 
-def vertical(
-    photo: Photo,
-    found: tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]],
-    matted: Matted,
-) -> tuple[Float[np.ndarray, "3"], float]:
+def vertical(everywhere: Signal) -> tuple[Float[np.ndarray, "3"], float]:
     """Find the vertical vanishing point that all fronts share, in units."""
-    fronts = np.any([facade.mask for facade in matted.facades], axis=0)
-    everywhere = signal(photo, found, fronts)
     return vanish.best_vertical(everywhere.strict, everywhere.loose, everywhere.weights)
 
 
