@@ -11,6 +11,7 @@ from nostalgin_core import (
     inpaint,
     matte,
     photo,
+    placard,
     quantise,
     rectify,
     segment,
@@ -72,8 +73,6 @@ def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, 
     instances = quantise.instances(instances)
     yield "segment", instances
     if networks.read is not None:
-        from nostalgin_core import placard  # noqa: PLC0415
-
         yield "placard", placard.read(picture, board(instances), networks.read)
     matted = matte.matte(picture, instances)
     if isinstance(matted, Rejection):

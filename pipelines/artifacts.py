@@ -24,6 +24,7 @@ def joined(*records: type) -> pa.Schema:
 
 MATTED: Final = joined(Facade, Occluder)
 RECTIFIED: Final = joined(Elevation, Seen, Rejection)
+THUMBNAIL: Final = pa.schema([pa.field("picture", pa.binary())])
 NUMBERS: Final = [field.name for field in joined(Seen, Rejection)]
 
 

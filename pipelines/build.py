@@ -4,7 +4,7 @@ import json
 import time
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions
@@ -17,13 +17,12 @@ from pipelines.models import Models
 from pipelines.options import CityOptions, part
 from pipelines.plan import Plan, plan
 from pipelines.progress import Watch
+from pipelines.publish import publish
 from pipelines.runs import WriteTable
 from pipelines.stages import Bench
 from pipelines.store import Store
 from pipelines.versions import versions
 from pipelines.voice import Voice
-
-CURRENT: Final = "CURRENT"
 
 
 class Lost(RuntimeError):  # noqa: N818 - it reads as what it is about
@@ -86,7 +85,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     note(store, run, options, began, result)
     report = reported(store, run, todo)
     if shard == (1, 1):
-        publish(store, run)
+        publish(store, run, bench.versions, found.rows)
     return report
 
 
@@ -181,8 +180,3 @@ def stages(result: PipelineResult) -> dict[str, dict[str, int]]:
         mine = told.setdefault(one.key.metric.namespace, {})
         mine["milliseconds"] = mine.get("milliseconds", 0) + one.result.sum
     return told
-
-
-def publish(store: Store, run: str) -> None:
-    """Write the site, and only then point at the run."""
-    store.write_bytes(CURRENT, f"{run}\n".encode())

@@ -16,7 +16,16 @@ from apache_beam import pvalue
 
 from pipelines.blocks import Assign, Model
 from pipelines.plan import Plan
-from pipelines.stages import Bench, FacadeRef, Inpaint, Matte, Read, Rectify, Segment
+from pipelines.stages import (
+    Bench,
+    FacadeRef,
+    Inpaint,
+    Matte,
+    Read,
+    Rectify,
+    Segment,
+    Thumbnail,
+)
 
 
 class Built(NamedTuple):
@@ -37,6 +46,7 @@ def city(pipeline: beam.Pipeline, plan: Plan, bench: Bench) -> Built:
         | "Spread photos" >> beam.Reshuffle()
         | Read()
     )
+    small = read.made | Thumbnail(bench)
     found = read.made | Segment(bench)
     matted = found.made | Matte(bench)
     facades = matted.made | Rectify(bench)
@@ -65,7 +75,7 @@ def city(pipeline: beam.Pipeline, plan: Plan, bench: Bench) -> Built:
         | "With cuboids" >> beam.Filter(lambda group: group[1]["placed"])
         | Model(bench)
     )
-    stages = (read, found, matted, facades, placed, finished, blocks)
+    stages = (read, small, found, matted, facades, placed, finished, blocks)
     rejected = tuple(stage.rejected for stage in stages)
     known = pipeline | "Known" >> beam.Create(plan.rejections)
     rejections = (*rejected, known) | "Rejections" >> beam.Flatten()

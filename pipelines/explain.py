@@ -15,8 +15,8 @@ from typing import Any, Final
 import cv2
 import numpy as np
 
-from nostalgin_core import rectify, steps
-from nostalgin_core.arrays import Gray, Lines
+from nostalgin_core import lines, steps
+from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Elevation, Facade, Instance, Photo, Rejection
 from nostalgin_core.steps import Networks, Stages
 from pipelines import draw, tables
@@ -182,14 +182,9 @@ def pictures(made: Stages, out: Path) -> None:
     """Write what is for looking at alone: evidence in colours, lines, the panel."""
     if made.photo is None:
         return
-    drawn = rectify.detect(made.photo)[1] if made.rectified else no_lines()
+    drawn = lines.detect(made.photo.image, lines.LOOSE)[0]
     for one in made.elevations:
         colours = draw.evidence_colours(one.evidence)
         saved(out, f"facade_{one.facade}_evidence_colours", colours)
     saved(out, "photo", made.photo.image)
     saved(out, "panel", panel(made, drawn))
-
-
-def no_lines() -> Lines:
-    """Give an empty set of lines."""
-    return np.empty((0, 4))

@@ -82,23 +82,18 @@ class Once:
 
 
 def reader() -> Callable[..., Any]:
-    """Load the reader of number boards, whose networks come with its package.
-
-    Boards are cut out and enlarged before they are read, so nothing is scaled up again
-    (the package's default, 736 px for the shorter side, costs ten times as much).
-    """
+    """Load the reader of number boards, whose networks come with its package."""
+    import numpy as np
     from rapidocr_onnxruntime import RapidOCR
 
-    engine = RapidOCR(
-        intra_op_num_threads=1,
-        inter_op_num_threads=1,
-        det_limit_side_len=640,
-        det_limit_type="max",
-    )
+    engine = RapidOCR(intra_op_num_threads=1, inter_op_num_threads=1)
 
     def read(image: Any) -> list[tuple[Any, str, float]]:
-        found, _ = engine(image, use_cls=False)
-        return [(corners, text, float(score)) for corners, text, score in found or []]
+        found, _ = engine(image)
+        return [
+            (np.array(corners, np.float64), str(text), float(score))
+            for corners, text, score in found or []
+        ]
 
     return read
 

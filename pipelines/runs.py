@@ -17,8 +17,8 @@ from apache_beam import pvalue
 
 from nostalgin_core import settle
 from nostalgin_core.records import Rejection, Seen
-from pipelines import tables
-from pipelines.blocks import Modelled, texture_of
+from pipelines import site_record, tables
+from pipelines.blocks import Modelled, Placed, texture_of
 from pipelines.stages import FacadeRef, PhotoRef
 from pipelines.store import Store, key_of
 from pipelines.versions import Versions
@@ -63,6 +63,7 @@ BLOCKS: Final = columns(
     buildings=COUNT,
     assumed=COUNT,
     credit=TEXT,
+    record=TEXT,  # what the viewer tells of it, as JSON
 )
 REJECTIONS: Final = tables.schema(Rejection)
 SCHEMAS: Final = {
@@ -148,8 +149,25 @@ def block_rows(done: Modelled) -> Rows:
             "buildings": len(built.buildings),
             "assumed": sum(building.assumed for building in built.buildings),
             "credit": done.placed.task.credit,
+            "record": record(done.placed),
         }
     ]
+
+
+def record(one: Placed) -> str:
+    """Write what the viewer tells of a block."""
+    told = {
+        ref.seen.photo: {"credit": one.task.credit, "caption": ref.photo.name}
+        for ref in one.facades
+    }
+    known = site_record.record(
+        one.block,
+        fronts=one.settled.fronts,
+        assignments=one.settled.assignments,
+        seen=[ref.seen for ref in one.facades],
+        photos=told,
+    )
+    return json.dumps(known, sort_keys=True)
 
 
 def rejection_rows(one: Rejection) -> Rows:

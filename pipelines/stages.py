@@ -24,7 +24,7 @@ from nostalgin_core.records import (
     Seen,
 )
 from nostalgin_core.steps import rounded
-from pipelines import artifacts, tables
+from pipelines import artifacts, site, tables
 from pipelines.attempt import Attempt, Outcome
 from pipelines.models import Models, Once
 from pipelines.store import Store
@@ -234,6 +234,32 @@ def inpainted(ref: FacadeRef, bench: Bench, network: Once) -> FacadeRef | Reject
     path = versions.path("inpaint", versions.inpaint_key(sha256, ref.seen.facade))
     bench.keep(path, make)
     return ref
+
+
+@dataclass
+class Thumbnail(beam.PTransform):
+    """Photos in; photos out whose thumbnails are in the store."""
+
+    bench: Bench
+
+    @no_annotations
+    def expand(self, photos: pvalue.PCollection) -> Outcome:
+        """Wire the stage."""
+        return photos | Attempt(Work(shrunk, self.bench), stage="thumbnail")
+
+
+def shrunk(ref: PhotoRef, bench: Bench) -> list[PhotoRef]:
+    """Keep a small picture of a photo; one that can't be read is told of elsewhere."""
+
+    def make() -> pa.Table | Rejection:
+        picture = bench.decoded(ref)
+        if isinstance(picture, Rejection):
+            return picture
+        small = site.thumbnail(picture.image)
+        return pa.Table.from_pylist([{"picture": small}], artifacts.THUMBNAIL)
+
+    path = bench.versions.path("thumbnail", bench.versions.thumbnail_key(ref.sha256))
+    return [ref] if bench.keep(path, make) is None else []
 
 
 def needed(picture: Photo | Rejection) -> Photo:

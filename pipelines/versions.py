@@ -47,12 +47,20 @@ from nostalgin_core import (
 from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
-CODE: Final = {"segment": 1, "matte": 1, "rectify": 1, "inpaint": 1, "block": 1}
+CODE: Final = {
+    "segment": 1,
+    "matte": 1,
+    "rectify": 1,
+    "inpaint": 1,
+    "block": 1,
+    "thumbnail": 1,
+}
 MODULES: Final[dict[str, tuple[ModuleType, ...]]] = {
     "segment": (photo, frame, segment),
     "matte": (facade, target, amodal, trimap, laplacian, smooth, matte),
     "rectify": (lines, vanish, upright, quad, camera, warp, rectify),
     "inpaint": (inpaint,),
+    "thumbnail": (photo,),
     "block": (chain, outline, apart, cuboid, block, atlas, mesh, picture, gltf),
 }
 PLAIN: Final = (bool, int, float, str, tuple)
@@ -99,6 +107,7 @@ class Versions:
     rectify: str
     inpaint: str
     block: str
+    thumbnail: str
 
     def key(self, stage: str, *made_from: str) -> str:
         """Make an artifact's key from the keys of what it is made from."""
@@ -111,6 +120,10 @@ class Versions:
     def segment_key(self, sha256: str) -> str:
         """Key what the network found in a photo."""
         return self.key("segment", sha256)
+
+    def thumbnail_key(self, sha256: str) -> str:
+        """Key a photo's small picture."""
+        return self.key("thumbnail", sha256)
 
     def matte_key(self, sha256: str) -> str:
         """Key the matted facades of a photo."""

@@ -1,0 +1,86 @@
+"""From a run's tables to the site that the world sees."""
+
+import json
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from pipelines import runs, site
+from pipelines.manifest import Row, natural
+from pipelines.store import Store
+from pipelines.versions import Versions
+
+CURRENT: Final = "CURRENT"
+SITE: Final = "site"
+STREET_M: Final = 24.0  # between blocks of which nothing tells where they lie
+
+
+def publish(store: Store, run: str, versions: Versions, rows: Sequence[Row]) -> None:
+    """Write the site, and only then point at the run.
+
+    A store elsewhere gets the pointer alone: `nostalgin build` on a machine that mounts
+    it writes the site.
+    """
+    blocks = runs.read_table(store, run, "blocks")
+    if blocks and "://" not in store.root:
+        folder = Path(store.root)
+        site.assemble(
+            folder / SITE,
+            blocks=models(store, run, blocks, rows),
+            photos=thumbnails(store, run, versions),
+            title=folder.resolve().name,
+        )
+    store.write_bytes(CURRENT, f"{run}\n".encode())
+
+
+def models(
+    store: Store, run: str, blocks: list[dict[str, Any]], rows: Sequence[Row]
+) -> list[site.BlockModel]:
+    """Gather the blocks' models, in the order of their numbers."""
+    why = reasons(runs.read_table(store, run, "rejections"), rows)
+    ordered = sorted(blocks, key=lambda row: natural(row["block"]))
+    made, east_m = [], 0.0
+    for row in ordered:
+        record = json.loads(row["record"])
+        for building in record["buildings"]:
+            building["rejections"] += why.get(building["id"], [])
+        (west, south, _), (east, _, _) = row["low_m"], row["high_m"]
+        made.append(
+            site.BlockModel(
+                name=row["block"],
+                glb=store.read_table(row["model"], ["glb"]).to_pylist()[0]["glb"],
+                record=record,
+                low_m=tuple(row["low_m"]),
+                high_m=tuple(row["high_m"]),
+                origin_m=(east_m - west, -south),
+            )
+        )
+        east_m += east - west + STREET_M
+    return made
+
+
+def reasons(
+    rejections: list[dict[str, Any]], rows: Sequence[Row]
+) -> dict[str, list[dict[str, str]]]:
+    """Tell for each building what went wrong with its photos."""
+    lots = defaultdict(set)
+    for row in rows:
+        if row.front is not None and row.photo:
+            lots[row.photo].add(f"{row.front.block}-{row.front.lot}")
+    told = defaultdict(list)
+    for one in rejections:
+        for building in sorted(lots.get(one["key"], ())):
+            named = {name: one[name] or "" for name in ("stage", "reason", "detail")}
+            told[building].append(named | {"photo": one["key"]})
+    return told
+
+
+def thumbnails(store: Store, run: str, versions: Versions) -> dict[str, bytes]:
+    """Read the small pictures of all photos that could be read, by key."""
+    found = {}
+    for row in runs.read_table(store, run, "photos"):
+        path = versions.path("thumbnail", versions.thumbnail_key(row["sha256"]))
+        if store.verdict(path) is True:
+            found[row["key"]] = store.read_table(path).to_pylist()[0]["picture"]
+    return found
