@@ -5,6 +5,7 @@ Beam and the networks are imported by the commands that need them, so that `--he
 answers at once.
 """
 
+import os
 import sys
 import time
 from pathlib import Path
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 FAILED: Final = 1
 TOO_MANY_REJECTIONS: Final = 3
+MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
 app = typer.Typer(
     name="nostalgin",
@@ -211,6 +213,91 @@ def build_command(
     except (Unusable, Unlocked, Lost) as problem:
         raise fail(str(problem)) from problem
     summed(report, voice, max_rejected)
+
+
+VIEW_EXAMPLES = """
+Examples:
+
+  nostalgin view city
+
+  nostalgin view city --port 8000 --no-browser
+"""
+
+
+@app.command("view", epilog=VIEW_EXAMPLES)
+def view_command(
+    city: Annotated[Path, typer.Argument(help="The city folder, or its site.")],
+    *,
+    port: Annotated[int, typer.Option(help="Port on this machine; 0 takes any.")] = 0,
+    browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
+) -> None:
+    """Serve the city to this machine alone and open it in a browser."""
+    from pipelines.view import NoSiteError, view
+
+    try:
+        view(city, port=port, browser=browser)
+    except NoSiteError as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise fail(f"port {port}: {problem.strerror}; take another") from problem
+
+
+DEMO_EXAMPLES = """
+Examples:
+
+  nostalgin demo                                  [dim]# two blocks in demo-city/[/]
+
+  nostalgin demo --blocks 1 --direct_num_workers 2
+"""
+
+
+@app.command(
+    "demo",
+    epilog=DEMO_EXAMPLES,
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+)
+def demo_command(
+    context: typer.Context,
+    folder: Annotated[
+        Path, typer.Option("-o", "--out", help="Where to put it.")
+    ] = Path("demo-city"),
+    *,
+    blocks: Annotated[int, typer.Option(min=1, max=3, help="How many blocks.")] = 2,
+    browser: Annotated[bool, typer.Option(help="Open a browser at the end.")] = True,
+    json_lines: JsonLines = False,
+) -> None:
+    """Paint a neighbourhood, photograph it, rebuild it from the photos, and show it.
+
+    Without a terminal it prints where the site lies, and ends. All other options go to
+    Beam; without any, a process works on each core, up to four.
+    """
+    from pipelines.models import one_thread
+
+    one_thread()
+    from pipelines.build import build
+    from pipelines.demo import CREDIT, painted
+    from pipelines.index import index
+    from pipelines.options import options
+    from pipelines.view import view
+
+    voice = told(json_lines)
+
+    def tell(done: int, whole: int) -> None:
+        if done % 10 == 0 or done == whole:
+            words = f"painted {done} of {whole} photographs"
+            voice.say("painted", words, done=done, whole=whole)
+
+    photos, listed = painted(folder, blocks=blocks, tell=tell)
+    index(photos, listed, str(folder), credit=CREDIT)
+    workers = [f"--direct_num_workers={min(os.cpu_count() or 1, MOST_WORKERS)}"]
+    report = build(options(str(folder), beam=context.args or workers), voice)
+    summed(report, voice, max_rejected=1.0)
+    site = folder / "site"
+    voice.say(
+        "site", f"the site lies in {site}: nostalgin view {folder}", site=str(site)
+    )
+    if browser and sys.stdout.isatty():
+        view(folder)
 
 
 def told(json_lines: bool) -> "Voice":  # noqa: FBT001 - as the option gives it

@@ -67,6 +67,7 @@ def _building(
 ) -> Json:
     names = [wall.front_id for wall in building.walls if wall.front_id is not None]
     own = [fronts[name] for name in names if name in fronts]
+    own.sort(key=lambda front: (front.ring, front.rank))
     worn = [wall.texture[0] for wall in building.walls if wall.texture]
     shown = [key for front in own for key in showing.get(front.front_id, ())]
     keys = list(dict.fromkeys([*worn, *shown]))

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import onnx
 from onnx import TensorProto, helper, numpy_helper
+
+from pipelines.index import index
 
 SIZE = (640, 480)  # h, w
 LEFT = np.array([[40, 80], [230, 140], [230, 560], [40, 600]], np.float32)
@@ -129,8 +130,6 @@ CATALOGUE = """photo,block,lot,street,address,width_m
 
 def write_city(folder: Path) -> Path:
     """Write photos of two blocks, one lot without a photo, and their manifest."""
-    from pipelines.index import index
-
     photos = folder / "photos"
     photos.mkdir(parents=True)
     for seed, name in enumerate(("5_1.png", "5_2.jpg", "5_2a.png", "6_1.png")):

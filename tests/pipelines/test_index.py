@@ -139,7 +139,7 @@ def test_a_bad_row_is_named_and_spoils_no_other(photos: Path) -> None:
     made = indexed(
         photos, CATALOGUE.replace("First Street,1,10", "First Street,1,wide")
     )
-    assert [one.key for one in made.rejections][0] == "list.csv row 2"
+    assert made.rejections[0].key == "list.csv row 2"
     assert made.fronts == 3
 
 

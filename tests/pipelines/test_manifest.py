@@ -122,13 +122,13 @@ def test_a_row_of_nothing_is_refused(store: Store) -> None:
 )
 def test_nonsense_is_refused_by_name(store: Store, data: bytes) -> None:
     (Path(store.root) / manifest.CSV).write_bytes(data)
-    with pytest.raises(Unusable, match="manifest.csv"):
+    with pytest.raises(Unusable, match=r"manifest\.csv"):
         manifest.read(store)
 
 
 def test_a_broken_parquet_file_is_refused_by_name(store: Store) -> None:
     (Path(store.root) / manifest.PARQUET).write_bytes(b"PAR1nonsense")
-    with pytest.raises(Unusable, match="manifest.parquet"):
+    with pytest.raises(Unusable, match=r"manifest\.parquet"):
         manifest.read(store)
 
 

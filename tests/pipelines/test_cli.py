@@ -1,0 +1,99 @@
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from pipelines.cli import app
+from tests.pipelines import painted
+
+
+def nostalgin(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+@pytest.mark.parametrize("command", ["demo", "index", "build", "view", "explain"])
+def test_help_has_examples(command: str) -> None:
+    result = nostalgin(command, "--help")
+    assert result.exit_code == 0
+    assert "Examples" in result.output
+    assert f"nostalgin {command}" in result.output
+
+
+def test_wrong_usage_ends_with_2() -> None:
+    assert nostalgin("explain").exit_code == 2
+    assert nostalgin("build", "city", "--shard", "9/3").exit_code == 2
+    assert nostalgin("no-such-command").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["index", "nowhere", "-o", "city"], "nowhere is no folder"),
+        (["build", "nowhere"], "nostalgin index"),
+        (["view", "nowhere"], "nostalgin build"),
+        (["explain", "nowhere.jpg", "-o", "out"], "nowhere.jpg"),
+    ],
+)
+def test_what_is_missing_is_named_with_the_remedy(
+    words: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = nostalgin(*words)
+    assert result.exit_code == 1
+    assert message in result.output
+    assert "Traceback" not in result.output
+
+
+def test_an_unreadable_photo_ends_with_1_and_without_a_traceback(
+    tmp_path: Path,
+) -> None:
+    photo = tmp_path / "words.jpg"
+    photo.write_text("no photograph")
+    made = {"segment": painted.segment_network(), "inpaint": painted.inpaint_network()}
+    models = painted.write_models(tmp_path / "models", **made)
+    result = nostalgin(
+        "explain", photo, "-o", tmp_path / "out", "--models", models, "--no-placard"
+    )
+    assert result.exit_code == 1
+    assert "words.jpg" in result.output
+    assert "Traceback" not in result.output
+
+
+def test_a_folder_of_models_without_a_lock_is_refused(tmp_path: Path) -> None:
+    photo = tmp_path / "photo.png"
+    photo.write_bytes(painted.photo())
+    result = nostalgin("explain", photo, "-o", tmp_path / "out", "--models", tmp_path)
+    assert result.exit_code == 1
+    assert "models.lock" in result.output
+
+
+def test_a_build_tells_machines_and_rejections_set_the_exit_code(
+    tmp_path: Path,
+) -> None:
+    city = painted.write_city(tmp_path)
+    for name in ("5_1.png", "5_2.jpg", "5_2a.png"):
+        (tmp_path / "photos" / name).write_bytes(b"")
+    models = tmp_path / "models"
+    words = ["build", city, "--models", models, "--json"]
+    result = nostalgin(*words)
+    assert result.exit_code == 3, result.output
+    events = [
+        json.loads(line) for line in result.output.splitlines() if line[:1] == "{"
+    ]
+    assert events[0]["event"] == "start"
+    assert events[-1]["event"] == "done"
+    assert events[-1]["rejected_photos"] == 3
+    rejected = {event["key"] for event in events if event["event"] == "rejected"}
+    assert rejected == {"5_1.png", "5_2.jpg", "5_2a.png"}
+    assert nostalgin(*words, "--max-rejected", "0.8").exit_code == 0
+    shutil.rmtree(city / "site")
+
+
+def test_help_answers_without_loading_beam() -> None:
+    report = "import sys, pipelines.cli; print('apache_beam' in sys.modules)"
+    told = subprocess.check_output([sys.executable, "-c", report], text=True)
+    assert told.strip() == "False"
