@@ -20,6 +20,7 @@ import { nameOf } from './words.js';
 const $ = (id) => document.getElementById(id);
 const FLIGHT_S = 1.1;
 const LONGEST_STEP_S = 0.1;
+const SETTLING_FRAMES = 20; // textures reach the screen a little later
 
 class Page {
   constructor(city) {
@@ -42,6 +43,7 @@ class Page {
     this.home = null;
     this.held = false;
     this.said = 0;
+    this.still = 0;
     this.stage.scene.add(city.group);
     this.stage.camera.rotation.order = 'YXZ';
     city.tiles.setCamera(this.stage.camera);
@@ -63,14 +65,7 @@ class Page {
     const middle = city.middle();
     this.walker.pose = wished.pose ?? { x: middle.x, z: middle.z, yaw: 0, pitch: 0 };
     if (wished.evidence) this.setEvidence(true);
-    const settled = new Promise((resolve, reject) => {
-      city.onError = reject;
-      city.onBlock = (block) => {
-        const shapes = block.buildings.map(({ id }) => city.buildings.get(String(id)).shape);
-        stage.settle(block, shapes.filter(Boolean));
-        resolve(block);
-      };
-    });
+    const settled = this.firstBlock();
     stage.renderer.setAnimationLoop((time) => this.frame(time));
     const block = await settled;
     this.home = this.homeIn(block);
@@ -79,6 +74,25 @@ class Page {
     if (wished.building && city.buildings.has(wished.building)) this.select(wished.building);
     document.body.classList.add('running');
     $('view').focus({ preventScroll: true });
+  }
+
+  /** Resolves to the first block once it stands, or to another where it can't be had. */
+  firstBlock() {
+    const { city, stage } = this;
+    const first = city.record.blocks.find(({ name }) => city.frames.has(name));
+    const standing = [];
+    return new Promise((resolve, reject) => {
+      city.onBlock = (block) => {
+        const shapes = block.buildings.map(({ id }) => city.buildings.get(String(id)).shape);
+        stage.settle(block, shapes.filter(Boolean));
+        standing.push(block);
+        if (block === first || city.errors.length) resolve(block);
+      };
+      city.onError = (error) => {
+        if (standing.length) resolve(standing[0]);
+        else if (city.errors.length >= city.record.blocks.length) reject(error);
+      };
+    });
   }
 
   homeIn(block) {
@@ -121,8 +135,9 @@ class Page {
   frame(time) {
     const dt = Math.min((time - (this.lastTime ?? time)) / 1000, LONGEST_STEP_S);
     this.lastTime = time;
-    if (!this.held) this.step(dt);
-    this.draw();
+    if (this.held) return;
+    this.step(dt);
+    if (this.changed()) this.draw();
   }
 
   step(dt) {
@@ -137,6 +152,20 @@ class Page {
       this.said = 0;
       this.tell();
     }
+  }
+
+  /** Whether the next picture would differ from the last: none is drawn in vain. */
+  changed() {
+    const { camera } = this.stage;
+    const { city } = this;
+    const state = [
+      ...camera.matrixWorld.elements, camera.aspect, city.loaded, city.tiles.loadProgress,
+      shown.evidence.value, this.chosen, innerWidth, innerHeight, city.tiles.visibleTiles.size,
+    ].join();
+    const same = state === this.state;
+    this.state = state;
+    this.still = same ? this.still + 1 : 0;
+    return this.still < SETTLING_FRAMES;
   }
 
   aim() {

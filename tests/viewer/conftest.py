@@ -1,0 +1,129 @@
+"""A painted site, a server for it, and a real browser that walks in it."""
+
+import json
+import os
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from nostalgin_core import facts
+from pipelines import site, site_record, view
+from tests.core import sample_block
+
+CHROMIUM = Path(os.environ.get("NOSTALGIN_CHROMIUM", "/usr/bin/chromium"))
+SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+HOSTILE = "<img src=x onerror=\"window.hacked=1\"> & <b>Archive</b>"
+WITHOUT_PICTURE = "photo-1-7"
+
+
+def model(name: str, origin_m: tuple[float, float]) -> site.BlockModel:
+    block, glb = sample_block.built(name)
+    photos = {
+        one.photo: {"credit": HOSTILE, "caption": f"Plate {one.photo}"}
+        for one in sample_block.assignments(name)
+    }
+    record = site_record.record(
+        block,
+        fronts=sample_block.fronts(name),
+        assignments=sample_block.assignments(name),
+        seen=(),
+        photos=photos,
+    )
+    low, high = facts.bounds(block)
+    return site.BlockModel(name, glb, record, low, high, origin_m)
+
+
+def thumbnails() -> dict[str, bytes]:
+    return {
+        photo: site.thumbnail(elevation.image)
+        for name in ("1", "2")
+        for (photo, _), elevation in sample_block.elevations(name).items()
+        if photo != WITHOUT_PICTURE
+    }
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory) -> Path:
+    if not (site.VIEWER / "index.html").is_file():
+        pytest.skip(f"no viewer at {site.VIEWER}: build it with `make viewer`")
+    folder = tmp_path_factory.mktemp("city") / "site"
+    site.assemble(
+        folder,
+        blocks=[model("1", (0.0, 0.0)), model("2", (0.0, 90.0))],
+        photos=thumbnails(),
+        title=HOSTILE,
+    )
+    return folder
+
+
+@pytest.fixture(scope="session")
+def address(folder) -> Iterator[str]:
+    with view.server(folder) as running:
+        threading.Thread(target=running.serve_forever, daemon=True).start()
+        yield view.address_of(running)
+        running.shutdown()
+
+
+@pytest.fixture(scope="session")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="no Playwright")
+    with playwright.sync_playwright() as driver:
+        known = CHROMIUM if CHROMIUM.is_file() else Path(driver.chromium.executable_path)
+        if not known.is_file():
+            pytest.skip(f"no Chromium at {known}; set NOSTALGIN_CHROMIUM to one")
+        running = driver.chromium.launch(executable_path=str(known), args=SOFTWARE_GL)
+        yield running
+        running.close()
+
+
+class Visit:
+    """A page with a city in it, and all that went wrong there."""
+
+    def __init__(self, browser, address: str) -> None:
+        self.page = browser.new_page(viewport={"width": 640, "height": 480})
+        self.troubles: list[str] = []
+        self.requests: list[str] = []
+        self.page.set_default_timeout(120_000)
+        self.page.on("console", self._heard)
+        self.page.on("pageerror", lambda error: self.troubles.append(str(error)))
+        self.page.on("request", lambda one: self.requests.append(one.url))
+        self.page.goto(address)
+
+    def _heard(self, message) -> None:
+        # software GL says that reading pixels is slow; the tiles library, that it is new
+        expected = ("GPU stall", "TilesRenderer: tiles versions", "GroupMarkerNotSet")
+        loud = message.type in ("error", "warning")
+        if loud and not any(words in message.text for words in expected):
+            self.troubles.append(message.text)
+
+    def ask(self, expression: str):
+        return self.page.evaluate(expression)
+
+    def arrive(self) -> "Visit":
+        """Wait until every block is there, then stop the clock."""
+        self.ask("nostalgin.ready")
+        self.ask("""new Promise(done => { const look = () => {
+            const {loaded, blocks, progress} = nostalgin.stats;
+            loaded >= blocks && progress >= 1 ? done() : setTimeout(look, 50);
+        }; look(); })""")
+        self.ask("nostalgin.hold()")
+        return self
+
+    def stand(self, x: float, z: float, yaw: float, pitch: float = 0.0) -> None:
+        pose = {"x": x, "z": z, "yaw": yaw, "pitch": pitch}
+        self.ask(f"nostalgin.setPose({json.dumps(pose)})")
+
+    def press(self, key: str, seconds: float) -> dict[str, float]:
+        """Hold a key for simulated seconds; tell where that leads."""
+        self.page.keyboard.down(key)
+        self.ask(f"""(async () => {{ for (let i = 0; i < {round(30 * seconds)}; i++)
+            nostalgin.page.step(1 / 30); }})()""")
+        self.page.keyboard.up(key)
+        return self.ask("nostalgin.pose")
+
+
+@pytest.fixture(scope="session")
+def visit(browser, address) -> Visit:
+    return Visit(browser, address).arrive()
