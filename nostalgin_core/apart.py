@@ -1,70 +1,97 @@
-"""Footprints that do not stand in one another.
+"""Footprints that stay inside their ring and do not stand in one another.
 
-Depths in a catalogue are of lots, not of buildings, and many are assumed. So buildings
-from opposite streets may meet in the middle of the block: the deeper one is cut back
-until they only touch. Fronts never move.
+Depths in a catalogue are of lots, not of buildings, and many are assumed. So a building
+may reach through to the next street, or meet another in the middle of the block: it is
+cut back, the deeper of two first, until they only touch. Fronts never move.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import shapely
 
-from nostalgin_core.arrays import Corners
+from nostalgin_core.arrays import Corners, Points
 
-TOUCH_M2 = 1e-4  # an overlap that is no more than rounding
-LEAST = 0.15  # of its depth that a building keeps
+TOUCH_M2 = 1e-3  # an overlap that is no more than rounding
+LEAST = 0.05  # of its depth that a building keeps
 
 
-def apart(footprints: Sequence[Corners], turns: Sequence[int]) -> list[Corners]:
-    """Cut footprints back until none overlaps another.
+def apart(
+    footprints: Sequence[Corners],
+    turns: Sequence[int],
+    *,
+    outline_m: Points | None = None,
+) -> list[Corners]:
+    """Cut footprints back until all lie in the outline and none overlaps another.
 
     `turns` counts the ring's corners that each one stands round: at one corner only
-    the inner corner gives way, at two or more nothing does.
+    the inner corner gives way, at two or more nothing does. In sharp corners a pair may
+    find no room; then both keep the least depth.
     """
-    kept = [np.asarray(corners, float) for corners in footprints]
-    for _ in range(4 * len(kept)):
-        shapes = [shapely.Polygon(corners) for corners in kept]
-        pair = _worst(shapes)
+    kept = [
+        _cut(np.asarray(corners, float), turn, lambda one: not _valid(one))
+        for corners, turn in zip(footprints, turns, strict=True)
+    ]
+    if outline_m is not None:
+        ground = shapely.Polygon(outline_m).buffer(1e-6)
+        kept = [
+            _cut(
+                one, turn, lambda one: _polygon(one).difference(ground).area > TOUCH_M2
+            )
+            for one, turn in zip(kept, turns, strict=True)
+        ]
+    hopeless: set[tuple[int, int]] = set()
+    for _ in range(6 * len(kept)):
+        pair = _worst([_polygon(one) for one in kept], hopeless)
         if pair is None:
             break
-        a, b = sorted(
-            pair, key=lambda index: (turns[index], -_depth(kept[index]), index)
-        )
-        for index, other in ((a, b), (b, a)):
-            cut = _cut(kept[index], shapes[other], turns[index])
-            if cut is not None:
-                kept[index] = cut
-                break
-        else:
-            break  # neither can give way: they stay as they are
+        first, second = sorted(pair, key=lambda i: (turns[i], -_depth(kept[i]), i))
+        for index, other in ((first, second), (second, first)):
+            shape = _polygon(kept[other])
+            kept[index] = _cut(
+                kept[index], turns[index], lambda one, it=shape: _overlaps(one, it)
+            )
+        if _overlaps(kept[first], _polygon(kept[second])):
+            hopeless.add(pair)
     return kept
 
 
-def _worst(shapes: Sequence[shapely.Polygon]) -> tuple[int, int] | None:
+def _polygon(corners: Corners) -> shapely.Polygon:
+    return shapely.Polygon(corners)
+
+
+def _valid(corners: Corners) -> bool:
+    """Tell whether a footprint's walls do not cross."""
+    return bool(shapely.Polygon(corners).is_valid)
+
+
+def _overlaps(corners: Corners, other: shapely.Polygon) -> bool:
+    return _polygon(corners).intersection(other).area > TOUCH_M2
+
+
+def _worst(
+    shapes: Sequence[shapely.Polygon], hopeless: set[tuple[int, int]]
+) -> tuple[int, int] | None:
     """Find the pair that overlaps most."""
     first, second = shapely.STRtree(shapes).query(shapes, predicate="intersects")
     pairs = [(int(a), int(b)) for a, b in zip(first, second, strict=True) if a < b]
+    pairs = [pair for pair in pairs if pair not in hopeless]
     areas = [shapes[a].intersection(shapes[b]).area for a, b in pairs]
     if not areas or max(areas) <= TOUCH_M2:
         return None
     return pairs[int(np.argmax(areas))]
 
 
-def _cut(corners: Corners, other: shapely.Polygon, turns: int) -> Corners | None:
-    """Bring the back of a building forward until it clears another."""
-    if turns > 1 or _overlap(_scaled(corners, LEAST, turns), other) > TOUCH_M2:
-        return None
+def _cut(corners: Corners, turns: int, faulty: Callable[[Corners], bool]) -> Corners:
+    """Bring the back of a building forward until nothing is wrong, or to the least."""
+    if turns > 1 or not faulty(corners):
+        return corners
     low, high = LEAST, 1.0
-    for _ in range(30):
+    for _ in range(24):
         middle = (low + high) / 2
-        clear = _overlap(_scaled(corners, middle, turns), other) <= TOUCH_M2 / 2
-        low, high = (middle, high) if clear else (low, middle)
+        wrong = faulty(_scaled(corners, middle, turns))
+        low, high = (low, middle) if wrong else (middle, high)
     return _scaled(corners, low, turns)
-
-
-def _overlap(corners: Corners, other: shapely.Polygon) -> float:
-    return shapely.Polygon(corners).intersection(other).area
 
 
 def _scaled(corners: Corners, share: float, turns: int) -> Corners:

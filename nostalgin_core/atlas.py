@@ -75,7 +75,9 @@ def bled(image: Gray, kept: Mask) -> Gray:
     return image[rows, columns]
 
 
-def scaled_codes(codes: EvidenceMap, size: tuple[int, int]) -> EvidenceMap:
+def scaled_codes(
+    codes: EvidenceMap, size: tuple[int, int]
+) -> UInt8[np.ndarray, "rows columns"]:
     """Scale an evidence map to a size (w, h) without ever claiming too much.
 
     Each texel takes the nearest code, but says PHOTOGRAPHED only where every texel that

@@ -106,7 +106,7 @@ def chain(
     footprints = _walked(sides, spans, starts_m, headings, closed=closed)
     end_m = starts_m[-1] + lengths_m[-1] * _ahead(headings[-1])
     return Ring(
-        footprints=tuple(_apart(footprints)),
+        footprints=tuple(_apart(footprints, starts_m if closed else None)),
         outline_m=starts_m if closed else np.vstack([starts_m, end_m]),
         headings_rad=tuple(float(heading) for heading in headings),
         closed=closed,
@@ -176,12 +176,13 @@ def measured(
     mean_m = sum(totals) / sum(total > 0 for total in totals)
     free = {side for side in range(len(sides)) if len(sides) != 4 or side in leaning}
     free -= {side for side, lean in leaning.items() if lean is not None}
+    free_sd = outline.FREE_SD_RAD if len(sides) == 4 else outline.POLYGON_SD_RAD
     return [
         outline.Measured(
             length_m=total or mean_m,
             squeeze_sd=_relative_sd(side) if side else outline.UNKNOWN_SD,
             heading_rad=float(heading) + (leaning.get(index) or 0.0),
-            heading_sd_rad=outline.FREE_SD_RAD if index in free else 0.0,
+            heading_sd_rad=free_sd if index in free else 0.0,
         )
         for index, (side, total, heading) in enumerate(
             zip(sides, totals, outline.nominal_headings(len(sides)), strict=True)
@@ -262,8 +263,9 @@ def _walked(
             end, last = run[-1]
             points.append(starts_m[end] + spans[end][last][1] * _ahead(headings[end]))
             if len(run) == 1:
-                walls = _party_walls(headings, here, spans[here], closed=closed)
-                back = piece.depth_m * walls[index : index + 2]
+                back = piece.depth_m * _party_walls(
+                    headings, here, spans[here], index, closed=closed
+                )
                 points += [points[1] + back[1], points[0] + back[0]]
             elif len(run) == 2:
                 points.append(points[0] + points[2] - points[1])
@@ -319,10 +321,11 @@ def _party_walls(
     headings: Float[np.ndarray, " n"],
     here: int,
     spans: Sequence[tuple[float, float]],
+    index: int,
     *,
     closed: bool,
-) -> Points:
-    """Find the way back from the street at each piece's start, and the last one's end.
+) -> Float[np.ndarray, "2 2"]:
+    """Find the ways back from the street at both ends of one piece.
 
     Each is one metre deep, measured square to the street.
     """
@@ -334,9 +337,9 @@ def _party_walls(
         at_start = _one_deep(-_ahead(headings[here - 1]), inward)
     if closed or here + 1 < count:
         at_end = _one_deep(_ahead(headings[(here + 1) % count]), inward)
-    ends = np.array([spans[0][0], *(end for _, end in spans)])
-    first, last = (ends[1], ends[-2]) if len(spans) > 2 else (ends[0], ends[-1])
-    share = np.clip((ends - first) / max(last - first, 1e-9), 0.0, 1.0)[:, None]
+    between = (spans[0][1], spans[-1][0]) if len(spans) > 2 else (0.0, spans[-1][1])
+    length_m = max(between[1] - between[0], 1e-9)
+    share = np.clip((np.array(spans[index]) - between[0]) / length_m, 0.0, 1.0)[:, None]
     return at_start * (1 - share) + at_end * share
 
 
@@ -346,10 +349,13 @@ def _one_deep(back: Vector, inward: Vector) -> Vector:
     return back / depth if depth > 0.5 else inward
 
 
-def _apart(footprints: Sequence[Footprint]) -> list[Footprint]:
+def _apart(
+    footprints: Sequence[Footprint], outline_m: Points | None
+) -> list[Footprint]:
     corners = apart(
         [footprint.corners_m for footprint in footprints],
         [footprint.turns for footprint in footprints],
+        outline_m=outline_m,
     )
     return [
         replace(footprint, corners_m=four)

@@ -21,13 +21,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
+from scipy.optimize import minimize
 
 Numbers = Float[np.ndarray, " n"]
+Unknowns = np.ndarray  # a growth and a turn for each side, in units of their spread
 
 STRETCH_SD = 0.5  # a catalogue of photographs lists perhaps two lots in three
 UNKNOWN_SD = 10.0  # of a side that nothing is known about
-FREE_SD_RAD = 0.5  # of a heading that is not bound to a grid
-STEP = 0.3  # of a logarithm or an angle, in one round
+FREE_SD_RAD = 3.0  # of a heading in a rectangular grid that it cuts: lengths decide
+POLYGON_SD_RAD = 0.3  # of a heading where there are not four sides
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,35 +52,54 @@ def close(sides: Sequence[Measured]) -> tuple[Numbers, Numbers]:
         raise ValueError(f"no ring closes over {[side.length_m for side in sides]}")
     measured_m = np.array([side.length_m for side in sides])
     bearing = np.array([side.heading_rad for side in sides])
-    heading_variance = np.array([side.heading_sd_rad**2 for side in sides])
-    squeeze = np.array([side.squeeze_sd for side in sides])
-    growth, turn = np.zeros(len(sides)), np.zeros(len(sides))
-    for _ in range(200):
-        length_sd = np.where(growth >= 0, np.maximum(squeeze, STRETCH_SD), squeeze)
-        variance = np.concatenate([length_sd**2, heading_variance])
-        length_m = measured_m * np.exp(growth)
-        ahead = np.column_stack([np.cos(bearing + turn), np.sin(bearing + turn)])
+    turn_sd = np.array([side.heading_sd_rad for side in sides])
+    squeeze_sd = np.array([side.squeeze_sd for side in sides])
+    stretch_sd = np.maximum(squeeze_sd, STRETCH_SD)
+    scale = np.concatenate([stretch_sd, turn_sd])  # the unknowns are multiples of it
+
+    def lengths(x: Unknowns) -> tuple[Numbers, Numbers]:
+        growth, turn = np.split(x * scale, 2)
+        return measured_m * np.exp(growth), bearing + turn
+
+    def weights(x: Unknowns) -> Unknowns:
+        squeezed = np.where(x[: len(sides)] < 0, stretch_sd / squeeze_sd, 1.0)
+        return np.concatenate([squeezed, np.ones(len(sides))])
+
+    def gap(x: Unknowns) -> Unknowns:
+        length_m, heading = lengths(x)
+        return length_m @ _ahead(heading) / measured_m.sum()
+
+    def slope(x: Unknowns) -> np.ndarray:
+        length_m, heading = lengths(x)
+        ahead = _ahead(heading)
         aside = np.column_stack([-ahead[:, 1], ahead[:, 0]])
-        slope = (
-            length_m[:, None] * np.vstack([ahead, aside]).reshape(2, -1, 2)
-        ).reshape(-1, 2)  # of the two conditions, by each unknown
-        gap = length_m @ ahead
-        now = np.concatenate([growth, turn])
-        normal = slope.T @ (variance[:, None] * slope)
-        pull = np.linalg.lstsq(normal, now @ slope - gap, rcond=1e-12)[0]
-        step = np.clip(variance * (slope @ pull) - now, -STEP, STEP)
-        growth, turn = np.split(now + step, 2)
-        if np.abs(step).max() < 1e-13:
+        by_unknown = np.concatenate([length_m[:, None] * v for v in (ahead, aside)])
+        return by_unknown.T * scale / measured_m.sum()
+
+    found = minimize(
+        lambda x: float(((weights(x) * x) ** 2).sum()),
+        np.zeros(2 * len(sides)),
+        jac=lambda x: 2 * weights(x) ** 2 * x,
+        constraints={"type": "eq", "fun": gap, "jac": slope},
+        method="SLSQP",
+        options={"maxiter": 200, "ftol": 1e-12},
+    )
+    x = found.x
+    for _ in range(20):  # the last millimetres, by the shortest way
+        if np.abs(gap(x)).max() < 1e-14:
             break
-    return measured_m * np.exp(growth), bearing + turn
+        x = x - np.linalg.pinv(slope(x)) @ gap(x)
+    return lengths(x)
 
 
 def corners(length_m: Numbers, heading_rad: Numbers) -> Float[np.ndarray, "n 2"]:
     """Walk the sides from the origin; return where each one starts."""
-    steps = length_m[:, None] * np.column_stack(
-        [np.cos(heading_rad), np.sin(heading_rad)]
-    )
+    steps = length_m[:, None] * _ahead(heading_rad)
     return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)[:-1]])
+
+
+def _ahead(heading_rad: Numbers) -> Float[np.ndarray, "n 2"]:
+    return np.column_stack([np.cos(heading_rad), np.sin(heading_rad)])
 
 
 def nominal_headings(count: int) -> Numbers:

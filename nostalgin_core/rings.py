@@ -328,7 +328,7 @@ def in_order(side: Sequence[Spot], law: Law) -> list[Spot]:
 def disorder(side: Sequence[Spot]) -> Iterable[str]:
     """Name the neighbours whose lots run against the rest of their side."""
     keys = [spot.key for spot in side]
-    falling = _agreement(keys, list(range(len(side)))) < 0
+    falling = _agreement(keys, [float(place) for place in range(len(side))]) < 0
     for a, b in itertools.pairwise(side):
         against = (a.key < b.key) if falling else (a.key > b.key)
         if against and a.number is not None and b.number is not None and len(side) > 2:

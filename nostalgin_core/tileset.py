@@ -15,6 +15,7 @@ from pyproj import Transformer
 
 Matrix4 = Float[np.ndarray, "4 4"]
 Json = dict[str, Any]
+Point = tuple[float, float, float] | Float[np.ndarray, " 3"]
 
 MARGIN_M = 0.01  # float32 positions round outwards by less
 
@@ -103,7 +104,7 @@ def city_from_block(tile: Tile, place: Place | None) -> Matrix4:
     return matrix
 
 
-def box(low_m: Sequence[float], high_m: Sequence[float]) -> list[float]:
+def box(low_m: Point, high_m: Point) -> list[float]:
     """Write an axis-parallel box as 3D Tiles does: centre and three half axes."""
     low, high = np.asarray(low_m, float), np.asarray(high_m, float)
     return _numbers(
@@ -111,9 +112,7 @@ def box(low_m: Sequence[float], high_m: Sequence[float]) -> list[float]:
     )
 
 
-def box_corners(
-    low_m: Sequence[float], high_m: Sequence[float]
-) -> Float[np.ndarray, "8 3"]:
+def box_corners(low_m: Point, high_m: Point) -> Float[np.ndarray, "8 3"]:
     """List the eight corners of an axis-parallel box."""
     picks = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
     return np.where(picks == 0, np.asarray(low_m, float), np.asarray(high_m, float))

@@ -1,12 +1,13 @@
 """A painted block that needs no network: fronts, elevations, and all that follows."""
 
 import json
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from nostalgin_core import atlas, block, evidence, facts, gltf, mesh, picture, tileset
-from nostalgin_core.records import Assignment, Block, Elevation, Front
+from nostalgin_core.records import Assignment, Block, Elevation, Front, Mesh
 
 # lot, side, street, address, width, depth, storeys (0: no photograph)
 LOTS = (
@@ -27,7 +28,7 @@ LOTS = (
     ("1", 3, "Second Avenue", "2", 15.0, 18.0, 4),
 )
 STOREY_M = 3.6
-TEXELS = 24  # a metre
+TEXELS = 16  # a metre
 
 
 def fronts(name: str = "1") -> tuple[Front, ...]:
@@ -59,21 +60,37 @@ def painted(width_m: float, storeys: int, *, facade: int, seed: int) -> Elevatio
         for bay in range(bays):
             x = round((bay + 0.5) * w / bays)
             y = round((storey + 0.55) * h / storeys)
-            wall[y - 22 : y + 22, x - 13 : x + 13] = 35
-            wall[y - 1 : y + 1, x - 13 : x + 13] = 160
-            wall[y + 22 : y + 26, x - 16 : x + 16] += 35
+            wall[y - 15 : y + 15, x - 9 : x + 9] = 35
+            wall[y - 1 : y + 1, x - 9 : x + 9] = 160
+            wall[y + 15 : y + 18, x - 11 : x + 11] += 35
     wall[: TEXELS // 3] += 25
     codes = np.full((h, w), evidence.PHOTOGRAPHED, np.uint8)
     step = TEXELS if seed % 3 == 0 else 0
     codes[:step, : w // 4] = codes[:step, -w // 4 :] = evidence.NOTHING
-    codes[-30:, w // 3 : w // 3 + 70] = evidence.INPAINTED
-    codes[-32:-30, w // 3 : w // 3 + 70] = evidence.SOFT_EDGE
+    codes[-20:, w // 3 : w // 3 + 45] = evidence.INPAINTED
+    codes[-22:-20, w // 3 : w // 3 + 45] = evidence.SOFT_EDGE
     if seed % 4 == 1:
         codes[:, -w // 6 :] = evidence.BEYOND_FRAME
+    return plain(np.clip(wall, 0, 255).astype(np.uint8), codes, facade=facade)
+
+
+def plain(
+    image: np.ndarray,
+    codes: np.ndarray | None = None,
+    alpha: np.ndarray | None = None,
+    *,
+    facade: int = 0,
+) -> Elevation:
+    """Make an elevation of an image, all photographed unless told otherwise."""
+    h, w = image.shape
+    if codes is None:
+        codes = np.full((h, w), evidence.PHOTOGRAPHED, np.uint8)
+    if alpha is None:
+        alpha = (codes == evidence.PHOTOGRAPHED).astype(np.float32)
     return Elevation(
         facade=facade,
-        image=np.clip(wall, 0, 255).astype(np.uint8),
-        alpha=(codes == evidence.PHOTOGRAPHED).astype(np.float32),
+        image=image,
+        alpha=alpha,
         evidence=codes,
         quad=np.array([[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]]),
         photo_from_elevation=np.eye(3),
@@ -87,6 +104,12 @@ def painted(width_m: float, storeys: int, *, facade: int, seed: int) -> Elevatio
     )
 
 
+def tiles(name: str) -> dict[atlas.TileKey, Elevation]:
+    """Key the painted elevations as an atlas does."""
+    return {(*key, None): one for key, one in elevations(name).items()}
+
+
+@cache
 def elevations(name: str = "1") -> dict[tuple[str, int], Elevation]:
     drawn = {}
     for number, (lot, side, _, _, width, _, storeys) in enumerate(LOTS):
@@ -113,24 +136,42 @@ def assignments(name: str = "1") -> tuple[Assignment, ...]:
     )
 
 
+@cache
+def sheet(name: str) -> atlas.Atlas:
+    """Draw the block's atlas, every elevation as it is."""
+    return atlas.build(tiles(name), longest_px=512)
+
+
+def any_mesh() -> Mesh:
+    """Make some building's mesh."""
+    made, _ = built("1")
+    return mesh.building(made.buildings[0], sheet("1"))
+
+
+@cache
 def built(name: str = "1") -> tuple[Block, bytes]:
+    """Build the block and write it, once."""
+    return rebuilt(name)
+
+
+def rebuilt(name: str) -> tuple[Block, bytes]:
     """Build the block and write it."""
     drawn = elevations(name)
     aspects = {key: (one.aspect, one.aspect_sd) for key, one in drawn.items()}
     made = block.block(name, fronts(name), assignments(name), aspects)
-    sheet = atlas.build(
+    page = atlas.build(
         {key: drawn[key[:2]] for key in atlas.wanted(made)}, longest_px=512
     )
     meshes = [
-        (one.building_id, mesh.building(one, sheet, number=number))
+        (one.building_id, mesh.building(one, page, number=number))
         for number, one in enumerate(made.buildings)
     ]
     known = facts.table(made, fronts(name), assignments(name))
     data = gltf.glb(
         name,
         meshes,
-        colours=picture.colours(sheet),
-        evidence=picture.evidence_key(sheet),
+        colours=picture.colours(page),
+        evidence=picture.evidence_key(page),
         table=known,
         copyright="painted",
         extras={"evidence": picture.legend(), "block": name},
