@@ -21,7 +21,7 @@ from pipelines.publish import publish
 from pipelines.runs import WriteTable
 from pipelines.stages import Bench
 from pipelines.store import Store
-from pipelines.versions import versions
+from pipelines.versions import NETWORK, versions
 from pipelines.voice import Voice
 
 
@@ -47,6 +47,10 @@ class Report:
         """Tell which share of the photos gave nothing at all."""
         return self.rejected_photos / max(self.photos, 1)
 
+    def grave(self) -> list[dict[str, Any]]:
+        """List the rejections that are of more than one facade among others."""
+        return [one for one in self.rejections if one["facade"] is None]
+
     def reasons(self) -> list[tuple[str, int]]:
         """Count rejections by stage and reason, most first."""
         counted = Counter(f"{r['stage']}: {r['reason']}" for r in self.rejections)
@@ -68,6 +72,8 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     if found.mended:
         manifest.write(store, [row.cells for row in found.rows])
     models = Models(ours.models) if ours.models else Models()
+    for network in NETWORK.values():
+        models.read(network)  # a spoiled file is told here, not by every photo
     bench = Bench(store, versions(models), models)
     todo = plan(found.rows, city=ours.city, shard=shard)
     run = runs.run_id(found.sha256, bench.versions, ours.shard)

@@ -5,6 +5,7 @@ Beam and the networks are imported by the commands that need them, so that `--he
 answers at once.
 """
 
+import logging
 import os
 import sys
 import time
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 FAILED: Final = 1
 TOO_MANY_REJECTIONS: Final = 3
+MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
 app = typer.Typer(
@@ -198,10 +200,13 @@ def build_command(
     from pipelines.models import one_thread
 
     one_thread()
+    logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
     from pipelines.build import Lost, build
+    from pipelines.hush import hushed
     from pipelines.manifest import Unusable
     from pipelines.models import Unlocked
     from pipelines.options import options
+    from pipelines.site import ViewerMissingError
 
     voice = told(json_lines)
     try:
@@ -209,8 +214,9 @@ def build_command(
     except ValueError as problem:
         raise typer.BadParameter(str(problem)) from problem
     try:
-        report = build(chosen, voice)
-    except (Unusable, Unlocked, Lost) as problem:
+        with hushed(errors):
+            report = build(chosen, voice)
+    except (Unusable, Unlocked, Lost, ViewerMissingError) as problem:
         raise fail(str(problem)) from problem
     summed(report, voice, max_rejected)
 
@@ -274,8 +280,10 @@ def demo_command(
     from pipelines.models import one_thread
 
     one_thread()
+    logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
     from pipelines.build import build
     from pipelines.demo import CREDIT, painted
+    from pipelines.hush import hushed
     from pipelines.index import index
     from pipelines.options import options
     from pipelines.view import view
@@ -290,7 +298,9 @@ def demo_command(
     photos, listed = painted(folder, blocks=blocks, tell=tell)
     index(photos, listed, str(folder), credit=CREDIT)
     workers = [f"--direct_num_workers={min(os.cpu_count() or 1, MOST_WORKERS)}"]
-    report = build(options(str(folder), beam=context.args or workers), voice)
+    chosen = options(str(folder), beam=context.args or workers)
+    with hushed(errors):
+        report = build(chosen, voice)
     summed(report, voice, max_rejected=1.0)
     site = folder / "site"
     voice.say(
@@ -309,17 +319,18 @@ def told(json_lines: bool) -> "Voice":  # noqa: FBT001 - as the option gives it
 
 def summed(report: "Report", voice: "Voice", max_rejected: float) -> None:
     """Tell what came of a build, and end with 3 if too much was rejected."""
-    for one in report.rejections:
-        facade = "" if one["facade"] is None else f" facade {one['facade']}"
-        words = (
-            f"{one['key']}{facade}: {one['stage']}: {one['reason']}: {one['detail']}"
-        )
+    shown = report.rejections if voice.machine else report.grave()[:MOST_LINES]
+    for one in shown:
+        words = f"{one['key']}: {one['stage']}: {one['reason']}: {one['detail']}"
         voice.say("rejected", f"rejected {words}", **one)
+    for reason, count in () if voice.machine else report.reasons():
+        voice.say("reason", f"{count} times rejected by {reason}")
     voice.say(
         "done",
         f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
         f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
-        f"{report.buildings} buildings, {report.assumed} of them assumed",
+        f"{report.buildings} buildings, {report.assumed} of them assumed; all "
+        f"rejections are in runs/{report.run}/rejections.parquet",
         run=report.run,
         photos=report.photos,
         rejected_photos=report.rejected_photos,

@@ -1,5 +1,6 @@
 """The networks as callables, checked against their lock, one session a process."""
 
+import hashlib
 import json
 import os
 from collections.abc import Callable
@@ -40,10 +41,24 @@ class Models:
         """Load a network, and refuse a file that is not the one the lock names."""
         from nostalgin_core import session
 
+        return session.load(self.read(name), self.sha256(name))
+
+    def read(self, name: str) -> bytes:
+        """Read a network's file, and refuse one that is not what the lock names.
+
+        Raises:
+            Unlocked: if it is missing, or another file than the lock names.
+        """
         path = Path(self.folder) / f"{name}.onnx"
         if not path.is_file():
             raise Unlocked(f"{path} is missing: name a folder that has it")
-        return session.load(path.read_bytes(), self.sha256(name))
+        data = path.read_bytes()
+        if hashlib.sha256(data).hexdigest() != self.sha256(name):
+            raise Unlocked(
+                f"{path} is not the file that {LOCK} names: install the package again, "
+                "or write the new checksum if the network was changed on purpose"
+            )
+        return data
 
     def networks(self, *, placard: bool) -> Any:
         """Load everything that the plain loop is given."""
