@@ -24,7 +24,7 @@ from export.inpainter import Critic, Generator
 from export.inpainting_data import Sheet, sheets
 from export.masks import Outline, free_form_share, outlines, standing
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.smooth import fill
+from nostalgin_core.repetition import guess
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +50,35 @@ class Sample:
     image: Gray
     hole: Mask
     scored: Mask
+    guess: Gray  # made from more of the picture than the crop
+
+
+def guessed(image: Gray, hole: Mask) -> Gray:
+    """Guess what a hole hides, as the pipeline does."""
+    made = guess(np.where(hole, 0, image).astype(np.float32), hole)
+    return np.clip(np.round(made), 0, 255).astype(np.uint8)
+
+
+def scaled(sheet: Sheet, least: int, *, rng: np.random.Generator) -> tuple[Gray, Mask]:
+    """Give a picture at a random size, its shorter side at least so long."""
+    image, known = sheet.image, sheet.known
+    scale = max(least / min(image.shape), rng.uniform(0.4, 1.0))
+    shape = [max(least, round(n * scale)) for n in image.shape]
+    small = cv2.resize(image, shape[::-1], interpolation=cv2.INTER_AREA)
+    seen = known.astype(np.uint8)
+    seen = cv2.resize(seen, shape[::-1], interpolation=cv2.INTER_NEAREST) > 0
+    if rng.random() < 0.5:
+        small, seen = small[:, ::-1], seen[:, ::-1]
+    return np.ascontiguousarray(small), np.ascontiguousarray(seen)
+
+
+def within(hole: Mask, size: int, *, rng: np.random.Generator) -> tuple[int, int]:
+    """Choose the crop's top left so that a hidden texel lies in it."""
+    y, x = np.argwhere(hole)[rng.integers(hole.sum())]
+    low = [max(0, n - size + 1) for n in (int(y), int(x))]
+    high = [min(n, m - size) for n, m in zip((int(y), int(x)), hole.shape, strict=True)]
+    top, left = (rng.integers(a, b + 1) for a, b in zip(low, high, strict=True))
+    return int(top), int(left)
 
 
 def draw(
@@ -59,46 +88,42 @@ def draw(
     *,
     rng: np.random.Generator,
 ) -> Sample:
-    """Crop one picture and make a hole in it."""
+    """Make a hole in one picture and crop a part of it.
+
+    The guess is made on a window of at most twice the crop's size, since a front that
+    repeats does so over more than a crop.
+    """
     sheet = pictures[rng.integers(len(pictures))]
-    image, known = sheet.image, sheet.known
-    least = size / min(image.shape)
-    scale = max(least, rng.uniform(0.4, 1.0))
-    if scale != 1.0:
-        shape = [max(size, round(n * scale)) for n in image.shape]
-        image = cv2.resize(image, shape[::-1], interpolation=cv2.INTER_AREA)
-        known = (
-            cv2.resize(
-                known.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_NEAREST
-            )
-            > 0
-        )
+    image, known = scaled(sheet, size, rng=rng)
+    shape = [min(n, 2 * size) for n in image.shape]
     at_foot = rng.random() < 0.35
-    y = image.shape[0] - size if at_foot else rng.integers(image.shape[0] - size + 1)
-    x = rng.integers(image.shape[1] - size + 1)
-    window = np.s_[y : y + size, x : x + size]
+    y = image.shape[0] - shape[0]
+    y = y if at_foot else rng.integers(y + 1)
+    x = rng.integers(image.shape[1] - shape[1] + 1)
+    window = np.s_[y : y + shape[0], x : x + shape[1]]
     image, known = image[window], known[window]
-    if rng.random() < 0.5:
-        image, known = image[:, ::-1], known[:, ::-1]
     if at_foot:
-        hole = standing((size, size), silhouettes, rng=rng)
+        hole = standing(image.shape, silhouettes, rng=rng)
     else:
-        hole = free_form_share((size, size), least=rng.uniform(0.05, 0.3), rng=rng)
+        hole = free_form_share(image.shape, least=rng.uniform(0.05, 0.3), rng=rng)
     if not (hole & known).any() or (known & ~hole).mean() < 0.15:
         return draw(pictures, silhouettes, size, rng=rng)
-    return Sample(np.ascontiguousarray(image), hole | ~known, hole & known)
+    made = guessed(image, hole | ~known)
+    top, left = within(hole & known, size, rng=rng)
+    crop = np.s_[top : top + size, left : left + size]
+    return Sample(image[crop], (hole | ~known)[crop], (hole & known)[crop], made[crop])
 
 
 def tensors(samples: list[Sample]) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Stack samples as image, hole, guess and scored, images from -1 to 1."""
-    images = [sample.image.astype(np.float32) / 127.5 - 1 for sample in samples]
-    guesses = [fill(i, s.hole) for i, s in zip(images, samples, strict=True)]
-    stacks = (images, [s.hole for s in samples], guesses, [s.scored for s in samples])
-    image, hole, guess, scored = (
-        torch.from_numpy(np.stack(stack).astype(np.float32))[:, None]
-        for stack in stacks
-    )
-    return image, hole, guess, scored
+    stacks = [
+        np.stack([getattr(sample, name) for sample in samples]).astype(np.float32)
+        for name in ("image", "hole", "guess", "scored")
+    ]
+    for index in (0, 2):
+        stacks[index] = stacks[index] / 127.5 - 1
+    image, hole, guesses, scored = (torch.from_numpy(a)[:, None] for a in stacks)
+    return image, hole, guesses, scored
 
 
 def off_by(made: Tensor, image: Tensor, scored: Tensor) -> Tensor:
@@ -148,10 +173,10 @@ class Trainer:
     def advance(self, samples: list[Sample]) -> dict[str, float]:
         """Take one step on one batch."""
         recipe = self.recipe
-        image, hole, guess, scored = tensors(samples)
+        image, hole, guesses, scored = tensors(samples)
         for group in self.for_generator.param_groups:
             group["lr"] = recipe.rate * min(1.0, (self.step + 1) / 50)
-        coarse, fine = self.generator(image, hole, guess)
+        coarse, fine = self.generator(image, hole, guesses)
         losses = {
             "coarse": off_by(coarse, image, scored),
             "fine": off_by(fine, image, scored),
@@ -238,15 +263,16 @@ def exam(pictures: tuple[Sheet, ...], *, count: int = 24) -> list[Sample]:
             known = sheet.known[y : y + h, x : x + w]
             hole = free_form_share((h, w), least=rng.uniform(0.18, 0.25), rng=rng)
             if (hole & known).any() and (known & ~hole).any():
-                questions.append(Sample(image, hole | ~known, hole & known))
+                made = guessed(image, hole | ~known)
+                questions.append(Sample(image, hole | ~known, hole & known, made))
     return questions
 
 
 def answer(generator: Generator, question: Sample) -> Gray:
     """Fill one held-out picture."""
-    image, hole, guess, _ = tensors([question])
+    image, hole, guesses, _ = tensors([question])
     with torch.no_grad():
-        made = generator(image, hole, guess)[1][0, 0].numpy()
+        made = generator(image, hole, guesses)[1][0, 0].numpy()
     return np.clip(np.round((made + 1) * 127.5), 0, 255).astype(np.uint8)
 
 
@@ -257,10 +283,9 @@ def navier_stokes(question: Sample) -> Gray:
     )
 
 
-def membrane(question: Sample) -> Gray:
-    """Fill with the guess that the network is given."""
-    made = fill(question.image.astype(np.float32), question.hole)
-    return np.clip(np.round(made), 0, 255).astype(np.uint8)
+def before(question: Sample) -> Gray:
+    """Give the guess that the network starts from."""
+    return question.guess
 
 
 def marks(made: list[Gray], questions: list[Sample]) -> tuple[float, float]:
@@ -324,7 +349,7 @@ def main() -> None:
             print(line, flush=True)
             print(line, file=log, flush=True)
 
-        for name, method in (("navier-stokes", navier_stokes), ("membrane", membrane)):
+        for name, method in (("navier-stokes", navier_stokes), ("guess", before)):
             l1, l2 = marks([method(q) for q in questions], questions)
             note(exam=name, l1=l1, l2=l2)
         note(taught=len(taught), fronts=sum(p.front for p in taught))

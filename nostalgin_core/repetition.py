@@ -9,22 +9,32 @@ agree best, and the copy is shaded to meet the known texels on the hole's border
 Letters: o an offset (x, y) in texels, p a texel.
 """
 
+from collections.abc import Iterator
+
 import cv2
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Shaped
 from scipy import fft, ndimage
 
 from nostalgin_core.arrays import Mask
 from nostalgin_core.smooth import Values, fill
 
-Offsets = Int[np.ndarray, "n 2"]  # x, y
+Offsets = Shaped[np.ndarray, "n 2"]  # x, y
+Rates = Float[np.ndarray, " n"]  # correlations
 Spread = Float[np.ndarray, "rows columns"]  # one entry an offset
 
+COUNT = 32  # offsets tried
+JUDGED_PX = 160_000  # larger fronts are judged at this size
 LEAST_OVERLAP = 0.08  # of all known texels: an agreement of fewer is chance
 LEAST_AGREEMENT = 0.12  # correlation of a peak that is worth trying
-ENOUGH_SHARE = 0.1  # of a neighbourhood known at both ends, to judge by it fully
-NOISE = 2.0  # gray levels: what varies less agrees by chance
+DOUBT = 0.02  # share of a neighbourhood that must be known to outweigh the whole front
 FAVOUR = 12.0  # a correlation higher by 0.1 weighs about three times as much
+NOISE = 2.0  # gray levels: what varies less agrees by chance
+
+
+def reach(values: Values) -> int:
+    """Say how far round a texel is looked: about a window's height."""
+    return max(6, min(values.shape) // 8)
 
 
 def detail(values: Values, known: Mask, *, radius: int) -> Values:
@@ -58,17 +68,35 @@ def autocorrelation(values: Values, known: Mask) -> Spread:
     return np.where(overlap > LEAST_OVERLAP * known.sum(), r, 0).astype(np.float32)
 
 
-def offsets(values: Values, known: Mask, *, count: int = 24) -> Offsets:
-    """Find the shifts under which what is known agrees best with itself."""
+def offsets(
+    values: Values, known: Mask, *, count: int = COUNT
+) -> tuple[Offsets, Rates]:
+    """Find the shifts under which what is known agrees best with itself.
+
+    Each peak is placed between texels by the parabola through its neighbours.
+
+    Returns the offsets, the best first, and the correlation that each reaches.
+    """
     h, w = values.shape
-    radius = max(4, min(h, w) // 10)
-    r = autocorrelation(detail(values, known, radius=radius), known)
+    r = autocorrelation(detail(values, known, radius=reach(values)), known)
     near = max(2, min(h, w) // 40)
     peaks = (r == ndimage.maximum_filter(r, 2 * near + 1)) & (r > LEAST_AGREEMENT)
     peaks[h - 1 - 2 * near : h + 2 * near, w - 1 - 2 * near : w + 2 * near] = False
+    peaks[[0, -1]] = peaks[:, [0, -1]] = False
     y, x = np.nonzero(peaks)
     best = np.argsort(-r[y, x], kind="stable")[:count]
-    return np.column_stack([x[best] - (w - 1), y[best] - (h - 1)])
+    y, x = y[best], x[best]
+    fine = [
+        at + _vertex(r[y - dy, x - dx], r[y, x], r[y + dy, x + dx])
+        for at, dy, dx in ((x, 0, 1), (y, 1, 0))
+    ]
+    return np.column_stack(fine) - [w - 1, h - 1], r[y, x]
+
+
+def _vertex(before: Rates, at: Rates, after: Rates) -> Rates:
+    """Find the top of the parabola through three neighbours, from the middle one."""
+    bend = 2 * at - before - after
+    return (after - before) / (2 * np.maximum(bend, 1e-6)).clip(1e-6)
 
 
 def shifted(a: np.ndarray, o: np.ndarray) -> np.ndarray:
@@ -85,24 +113,20 @@ def shifted(a: np.ndarray, o: np.ndarray) -> np.ndarray:
     return out
 
 
-def copy(
-    values: Values, known: Mask, choices: Offsets, *, radius: int
-) -> tuple[Values, Values]:
-    """Copy into every texel from where the front repeats.
+def agreements(
+    values: Values, known: Mask, choices: Offsets, rates: Rates
+) -> Iterator[tuple[Values, Values]]:
+    """Judge each offset round every texel: how well it agrees, and what shade it lacks.
 
-    Each offset is judged round every texel by the correlation of the detail there
-    with the detail where it leads; the copies are averaged with weights that favour
-    the best.
-
-    Returns the copy and its trust, 0 to 1: the correlation reached; 0 where no copy is.
+    Agreement is the correlation of the detail here with the detail where the offset
+    leads. Where too little is known at both ends, as deep inside a hole, the offset's
+    correlation over the whole front stands in.
     """
-    size = (2 * radius + 1,) * 2
-    plain = detail(values, known, radius=radius)
-    total, weights, trust = np.zeros((3, *values.shape), np.float32)
-    for o in choices:
+    size = (2 * reach(values) + 1,) * 2
+    plain = detail(values, known, radius=reach(values))
+    for o, rate in zip(choices, rates, strict=True):
         there = shifted(known, o)
         both = (there & known).astype(np.float32)
-        copied = shifted(values, o)
         mine, theirs = plain * both, shifted(plain, o) * both
         share, dot, own, other, shade = (
             cv2.blur(a, size, borderType=cv2.BORDER_CONSTANT)
@@ -111,16 +135,42 @@ def copy(
                 mine * theirs,
                 mine * mine,
                 theirs * theirs,
-                (values - copied) * both,
+                (values - shifted(values, o)) * both,
             )
         )
         norm = np.sqrt(np.maximum(own * other, 0)) + NOISE**2 * share
-        r = np.where(there, dot / np.maximum(norm, 1e-6), 0).clip(0, 1)
-        r *= np.minimum(share / ENOUGH_SHARE, 1)
-        weight = np.expm1(FAVOUR * r)
-        total += weight * (copied + shade / np.maximum(share, 1e-6))
+        r = dot / np.maximum(norm, 1e-6)
+        r = (r * share + DOUBT * rate) / (share + DOUBT)
+        yield np.where(there, r, 0).clip(0, 1), shade / (share + DOUBT)
+
+
+def copy(values: Values, known: Mask) -> tuple[Values, Values]:
+    """Copy into every texel from where the front repeats.
+
+    The copies are averaged with weights that favour the offsets that agree best.
+    Offsets are found and judged at a small size and used at the full one.
+
+    Returns the copy and its trust, 0 to 1: the agreement reached; 0 where no copy is.
+    """
+    h, w = values.shape
+    shrink = min(1.0, (JUDGED_PX / (h * w)) ** 0.5)
+    small, seen = values, known
+    if shrink < 1:
+        size = (max(1, round(w * shrink)), max(1, round(h * shrink)))
+        part = cv2.resize(known.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+        mean = cv2.resize(values * known, size, interpolation=cv2.INTER_AREA)
+        small, seen = mean / np.maximum(part, 1e-6), part > 0.5
+    choices, rates = offsets(small, seen)
+    scale = [w / small.shape[1], h / small.shape[0]]
+    full = np.round(choices * scale).astype(int)
+    total, weights, trust = np.zeros((3, h, w), np.float32)
+    judged = agreements(small, seen, np.round(choices).astype(int), rates)
+    for o, maps in zip(full, judged, strict=True):
+        r, shade = maps if shrink == 1 else (cv2.resize(a, (w, h)) for a in maps)
+        weight = np.expm1(FAVOUR * r) * shifted(known, o)
+        total += weight * (shifted(values, o) + shade)
         weights += weight
-        trust = np.maximum(trust, r)
+        trust = np.maximum(trust, np.where(weight > 0, r, 0))
     return total / np.maximum(weights, 1e-6), trust
 
 
@@ -130,14 +180,11 @@ def guess(values: Values, hole: Mask) -> Values:
     What the copies miss of the known texels, mostly shade, is carried into the hole by
     a membrane of its own.
     """
-    known = ~hole
     smooth = fill(values, hole)
-    choices = offsets(np.where(hole, 0, values), known)
-    if len(choices) == 0:
-        return smooth
-    radius = max(6, min(values.shape) // 8)
-    copied, trust = copy(np.where(hole, 0, values), known, choices, radius=radius)
+    copied, trust = copy(np.where(hole, 0, values).astype(np.float32), ~hole)
     usable = trust > 0
+    if not usable.any():
+        return smooth
     missed = fill(values - copied, hole | ~usable)
     made = smooth + trust * (copied + missed - smooth)
     return np.where(hole, np.where(usable, made, smooth), values).astype(np.float32)
