@@ -5,6 +5,7 @@ import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,7 +15,7 @@ from tests.core import sample_block
 
 CHROMIUM = Path(os.environ.get("NOSTALGIN_CHROMIUM", "/usr/bin/chromium"))
 SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-HOSTILE = "<img src=x onerror=\"window.hacked=1\"> & <b>Archive</b>"
+HOSTILE = '<img src=x onerror="window.hacked=1"> & <b>Archive</b>'
 WITHOUT_PICTURE = "photo-1-7"
 
 
@@ -45,7 +46,7 @@ def thumbnails() -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="session")
-def folder(tmp_path_factory) -> Path:
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if not (site.VIEWER / "index.html").is_file():
         pytest.skip(f"no viewer at {site.VIEWER}: build it with `make viewer`")
     folder = tmp_path_factory.mktemp("city") / "site"
@@ -59,7 +60,7 @@ def folder(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def address(folder) -> Iterator[str]:
+def address(folder: Path) -> Iterator[str]:
     with view.server(folder) as running:
         threading.Thread(target=running.serve_forever, daemon=True).start()
         yield view.address_of(running)
@@ -67,10 +68,12 @@ def address(folder) -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def browser():
+def browser() -> Iterator[Any]:
     playwright = pytest.importorskip("playwright.sync_api", reason="no Playwright")
     with playwright.sync_playwright() as driver:
-        known = CHROMIUM if CHROMIUM.is_file() else Path(driver.chromium.executable_path)
+        known = (
+            CHROMIUM if CHROMIUM.is_file() else Path(driver.chromium.executable_path)
+        )
         if not known.is_file():
             pytest.skip(f"no Chromium at {known}; set NOSTALGIN_CHROMIUM to one")
         running = driver.chromium.launch(executable_path=str(known), args=SOFTWARE_GL)
@@ -81,7 +84,7 @@ def browser():
 class Visit:
     """A page with a city in it, and all that went wrong there."""
 
-    def __init__(self, browser, address: str) -> None:
+    def __init__(self, browser: Any, address: str) -> None:
         self.page = browser.new_page(viewport={"width": 640, "height": 480})
         self.troubles: list[str] = []
         self.requests: list[str] = []
@@ -91,14 +94,14 @@ class Visit:
         self.page.on("request", lambda one: self.requests.append(one.url))
         self.page.goto(address)
 
-    def _heard(self, message) -> None:
-        # software GL says that reading pixels is slow; the tiles library, that it is new
+    def _heard(self, message: Any) -> None:
+        # software GL finds reading pixels slow; the tiles library finds 1.1 new
         expected = ("GPU stall", "TilesRenderer: tiles versions", "GroupMarkerNotSet")
         loud = message.type in ("error", "warning")
         if loud and not any(words in message.text for words in expected):
             self.troubles.append(message.text)
 
-    def ask(self, expression: str):
+    def ask(self, expression: str) -> Any:
         return self.page.evaluate(expression)
 
     def arrive(self) -> "Visit":
@@ -125,5 +128,5 @@ class Visit:
 
 
 @pytest.fixture(scope="session")
-def visit(browser, address) -> Visit:
+def visit(browser: Any, address: str) -> Visit:
     return Visit(browser, address).arrive()

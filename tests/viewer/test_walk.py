@@ -1,5 +1,7 @@
 import io
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,18 +12,16 @@ from tests.viewer.conftest import HOSTILE, Visit
 # Block 1's first front, 113-119 West 1 Street, stands on z = 0 and looks south (z > 0).
 RADIUS_M = 0.35
 
-pytestmark = pytest.mark.xdist_group("browser")
-
 
 @pytest.fixture(autouse=True)
-def calm(visit):
+def calm(visit: Visit) -> None:
     visit.ask("nostalgin.hold()")
     visit.ask("nostalgin.setEvidence(false)")
     visit.ask("nostalgin.setBird(false)")
     visit.page.keyboard.press("Escape")
 
 
-def pixels(visit) -> np.ndarray:
+def pixels(visit: Visit) -> np.ndarray:
     """Look at the city alone, without what lies over it."""
     visit.page.add_style_tag(content="body > :not(#view) { opacity: 0 !important }")
     visit.ask("nostalgin.step(0)")
@@ -33,7 +33,7 @@ def coloured(image: np.ndarray) -> np.ndarray:
     return image.max(axis=2) - image.min(axis=2) > 60
 
 
-def test_every_block_arrives_and_nothing_complains(visit):
+def test_every_block_arrives_and_nothing_complains(visit: Visit) -> None:
     stats = visit.ask("nostalgin.stats")
     assert stats["loaded"] == stats["blocks"] == 2
     assert stats["errors"] == []
@@ -41,14 +41,16 @@ def test_every_block_arrives_and_nothing_complains(visit):
     assert missing == []
 
 
-def test_nothing_is_asked_of_another_host(visit, address):
+def test_nothing_is_asked_of_another_host(visit: Visit, address: str) -> None:
     elsewhere = [
         url for url in visit.requests if not url.startswith((address, "blob:", "data:"))
     ]
     assert elsewhere == []
 
 
-def test_the_walk_begins_on_the_street_before_a_front(browser, address):
+def test_the_walk_begins_on_the_street_before_a_front(
+    browser: Any, address: str
+) -> None:
     fresh = Visit(browser, address).arrive()
     pose = fresh.ask("nostalgin.pose")
     assert pose["z"] > 4.0
@@ -56,14 +58,14 @@ def test_the_walk_begins_on_the_street_before_a_front(browser, address):
     fresh.page.close()
 
 
-def test_a_wall_stops_the_walker(visit):
+def test_a_wall_stops_the_walker(visit: Visit) -> None:
     visit.stand(9.0, 9.0, yaw=0.0)
     pose = visit.press("w", seconds=5)
     assert pose["z"] == pytest.approx(RADIUS_M, abs=0.02)
     assert pose["x"] == pytest.approx(9.0, abs=0.02)
 
 
-def test_the_hurried_walker_is_stopped_too(visit):
+def test_the_hurried_walker_is_stopped_too(visit: Visit) -> None:
     visit.stand(9.0, 9.0, yaw=0.0)
     visit.page.keyboard.down("Shift")
     pose = visit.press("w", seconds=5)
@@ -71,28 +73,28 @@ def test_the_hurried_walker_is_stopped_too(visit):
     assert pose["z"] == pytest.approx(RADIUS_M, abs=0.02)
 
 
-def test_a_walker_who_meets_a_wall_aslant_slides_along_it(visit):
+def test_a_walker_who_meets_a_wall_aslant_slides_along_it(visit: Visit) -> None:
     visit.stand(9.0, 3.0, yaw=-45.0)
     pose = visit.press("w", seconds=3)
     assert pose["z"] == pytest.approx(RADIUS_M, abs=0.02)
     assert pose["x"] > 13.0
 
 
-def test_arrow_keys_turn_and_walk(visit):
+def test_arrow_keys_turn_and_walk(visit: Visit) -> None:
     visit.stand(9.0, 9.0, yaw=0.0)
     assert visit.press("ArrowLeft", seconds=0.5)["yaw"] > 20
     visit.stand(9.0, 9.0, yaw=0.0)
     assert visit.press("ArrowDown", seconds=1)["z"] > 11
 
 
-def test_stepping_onto_the_kerb_lifts_the_eyes(visit):
+def test_stepping_onto_the_kerb_lifts_the_eyes(visit: Visit) -> None:
     visit.stand(9.0, 9.0, yaw=0.0)
     low = visit.ask("nostalgin.pose")["y"]
     high = visit.press("w", seconds=3)["y"]
     assert high - low == pytest.approx(0.15, abs=0.01)
 
 
-def test_a_click_on_a_building_tells_who_it_is(visit):
+def test_a_click_on_a_building_tells_who_it_is(visit: Visit) -> None:
     visit.stand(9.0, 12.0, yaw=0.0)
     picked = visit.ask("nostalgin.pick(0, 0.1)")
     assert (picked["id"], picked["lot"], picked["block"]) == ("1-1", "1", "1")
@@ -100,13 +102,13 @@ def test_a_click_on_a_building_tells_who_it_is(visit):
     panel = visit.page.locator("#panel")
     assert panel.locator("h2").inner_text() == "115-119 West 1 Street; 2 Second Avenue"
     assert "Lot 1" in panel.inner_text()
-    assert "18.0 m (59′ 1″)" in panel.inner_text()
+    assert "18.0 m (59\u2032 1\u2033)" in panel.inner_text()
     image = panel.locator("img").first
     image.evaluate("one => one.decode()")
     assert image.evaluate("one => one.naturalWidth") > 100
 
 
-def test_catalogue_text_stays_text(visit):
+def test_catalogue_text_stays_text(visit: Visit) -> None:
     visit.ask("nostalgin.select('1-1')")
     assert HOSTILE in visit.page.locator("#panel cite").first.inner_text()
     assert visit.page.locator("h1").inner_text() == HOSTILE
@@ -114,19 +116,19 @@ def test_catalogue_text_stays_text(visit):
     assert visit.ask("window.hacked === undefined")
 
 
-def test_a_missing_photograph_names_the_remedy(visit):
+def test_a_missing_photograph_names_the_remedy(visit: Visit) -> None:
     visit.ask("nostalgin.select('1-7')")
     assert "nostalgin build" in visit.page.locator("#panel figure").inner_text()
 
 
-def test_an_assumed_building_says_so(visit):
+def test_an_assumed_building_says_so(visit: Visit) -> None:
     visit.ask("nostalgin.select('1-5')")
     text = visit.page.locator("#panel").inner_text()
     assert "No photograph of this lot could be used" in text
     assert "none of it" in text
 
 
-def test_e_colours_what_no_camera_saw_and_nothing_else(visit):
+def test_e_colours_what_no_camera_saw_and_nothing_else(visit: Visit) -> None:
     # Lot 1 is 18 m wide; a car hid a patch at its foot, a third of the way along.
     visit.stand(9.0, 13.0, yaw=0.0)
     before = pixels(visit)
@@ -145,7 +147,7 @@ def test_e_colours_what_no_camera_saw_and_nothing_else(visit):
     assert np.abs(pixels(visit) - before)[front].max() < 4
 
 
-def test_the_birds_eye_shows_every_building(visit):
+def test_the_birds_eye_shows_every_building(visit: Visit) -> None:
     visit.page.keyboard.press("b")
     visit.ask("(() => { for (let i = 0; i < 60; i++) nostalgin.page.step(1/30) })()")
     assert visit.ask("nostalgin.stats.height") == 1
@@ -157,7 +159,9 @@ def test_the_birds_eye_shows_every_building(visit):
     visit.page.keyboard.press("b")
 
 
-def test_the_address_bar_shares_the_view(visit, browser, address):
+def test_the_address_bar_shares_the_view(
+    visit: Visit, browser: Any, address: str
+) -> None:
     visit.stand(12.5, 7.25, yaw=30.0, pitch=5.0)
     visit.ask("nostalgin.setEvidence(true)")
     visit.ask("nostalgin.select('1-4')")
@@ -173,7 +177,7 @@ def test_the_address_bar_shares_the_view(visit, browser, address):
     other.page.close()
 
 
-def test_a_building_is_found_with_keys_alone(visit):
+def test_a_building_is_found_with_keys_alone(visit: Visit) -> None:
     visit.page.keyboard.press("g")
     visit.page.keyboard.type("2 lot 17")
     visit.page.keyboard.press("Enter")
@@ -186,7 +190,7 @@ def test_a_building_is_found_with_keys_alone(visit):
     assert visit.page.locator("#panel").is_hidden()
 
 
-def test_a_folder_without_a_city_names_the_remedy(browser, address, folder):
+def test_a_folder_without_a_city_names_the_remedy(browser: Any, address: str) -> None:
     page = browser.new_page()
     page.route("**/site.json", lambda route: route.fulfill(status=404))
     page.goto(address)
@@ -194,7 +198,7 @@ def test_a_folder_without_a_city_names_the_remedy(browser, address, folder):
     page.close()
 
 
-def test_the_site_names_only_what_it_holds(folder):
+def test_the_site_names_only_what_it_holds(folder: Path) -> None:
     record = json.loads((folder / "site.json").read_text())
     for block in record["blocks"]:
         assert (folder / block["uri"]).is_file()
