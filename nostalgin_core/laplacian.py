@@ -20,7 +20,7 @@ Known pixels are constants, so only rows of unknown pixels are assembled, from w
 that touch them. Unknown pixels form thin bands, and numbered along a band (reverse
 Cuthill-McKee) their matrix is banded too, about four times as wide as the band is in
 pixels. LAPACK's banded Cholesky then solves it exactly, several times faster than a
-general sparse factorisation.
+general sparse factorisation; that one is left for bands that branch too much.
 """
 
 from typing import Final, NamedTuple
@@ -30,12 +30,14 @@ import numpy as np
 from jaxtyping import Float, Float32, Int, Int32
 from scipy import linalg, sparse
 from scipy.sparse import csgraph
+from scipy.sparse.linalg import splu
 
 from nostalgin_core.arrays import Alpha, Gray, Mask
 from nostalgin_core.trimap import BACKGROUND, FOREGROUND, Trimap
 
 EPSILON: Final = 1e-7  # Levin's own: squared gray levels, where white is 1
-ENTRIES: Final = 24_000_000  # of one banded factor: 192 MB
+ENTRIES: Final = 24_000_000  # of one factor: 192 MB
+WIDEST: Final = 400  # from this matrix bandwidth on, a sparse factorisation is faster
 _PAD: Final = 2  # how far a window that holds a pixel reaches from it
 _N: Final = 9
 
@@ -80,7 +82,7 @@ def alpha(
         trimap: Codes of `trimap`.
         prior: What to believe where the image does not tell.
         epsilon: n times the variance below which a window counts as even; white is 1.
-        entries: The size of the largest banded factor.
+        entries: The size of the largest factor.
 
     Raises:
         ValueError: if the trimap knows no pixel at all.
@@ -110,7 +112,8 @@ def _solve(
         result[~unknown] = np.round(result[~unknown])
     if len(numbering.ranks):
         equations = system(light, unknown, result, prior=prior, epsilon=epsilon)
-        result[unknown] = banded_solve(equations, numbering.ranks)
+        solver = banded_solve if numbering.reach < WIDEST else sparse_solve
+        result[unknown] = solver(equations, numbering.ranks)
     return result
 
 
@@ -230,7 +233,12 @@ class Order(NamedTuple):
     """A numbering of the unknowns along their bands."""
 
     ranks: Int[np.ndarray, " n"]
-    entries: int  # of the banded factor
+    reach: int  # the greatest difference of rank between coupled unknowns
+
+    @property
+    def entries(self) -> int:
+        """Estimate the size of a factor."""
+        return len(self.ranks) * min(self.reach + 1, WIDEST)
 
 
 def order(unknown: Mask) -> Order:
@@ -255,26 +263,61 @@ def order(unknown: Mask) -> Order:
         both = there >= 0
         spread = np.abs(ranks[both] - ranks[there[both]])
         reach = max(reach, int(spread.max(initial=0)))
-    return Order(ranks, len(pixels) * (reach + 1))
+    return Order(ranks, reach)
 
 
 def banded_solve(
     equations: System, ranks: Int[np.ndarray, " n"]
 ) -> Float[np.ndarray, " n"]:
     """Solve by banded Cholesky, with the unknowns numbered by `ranks`."""
-    n = len(ranks)
-    present = equations.neighbours >= 0
-    rows = np.broadcast_to(ranks, present.shape)[present]
-    columns = ranks[equations.neighbours[present]]
+    values, rows, columns = _entries(equations, ranks)
     spread = np.abs(rows - columns)
-    band = np.zeros((int(spread.max()) + 1, n), order="F")  # LAPACK's lower form
-    band[spread, np.minimum(rows, columns)] = equations.values[present]
-    right = np.empty(n)
+    shape = (int(spread.max(initial=0)) + 1, len(ranks))
+    band = np.zeros(shape, order="F")  # LAPACK's lower form
+    band[spread, np.minimum(rows, columns)] = values
+    right = np.empty(len(ranks))
     right[ranks] = equations.right
     solved = linalg.solveh_banded(
         band, right, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False
     )
     return solved[ranks]
+
+
+def sparse_solve(
+    equations: System, ranks: Int[np.ndarray, " n"]
+) -> Float[np.ndarray, " n"]:
+    """Solve by sparse factorisation, with an ordering of its own."""
+    n = len(ranks)
+    values, rows, columns = _entries(equations, np.arange(n))
+    other = rows != columns
+    matrix = sparse.coo_array(
+        (
+            np.concatenate([values, values[other]]),
+            (
+                np.concatenate([rows, columns[other]]),
+                np.concatenate([columns, rows[other]]),
+            ),
+        ),
+        shape=(n, n),
+    )
+    # It is positive definite: no pivot is ever needed.
+    factor = splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    return factor.solve(equations.right)
+
+
+def _entries(
+    equations: System, ranks: Int[np.ndarray, " n"]
+) -> tuple[Float[np.ndarray, " m"], Int[np.ndarray, " m"], Int[np.ndarray, " m"]]:
+    """List the upper half's values with the ranks of the unknowns they couple."""
+    present = equations.neighbours >= 0
+    rows = np.broadcast_to(ranks, present.shape)[present]
+    columns = ranks[equations.neighbours[present]]
+    return equations.values[present], rows, columns
 
 
 def _from_half(
