@@ -15,7 +15,7 @@ from jaxtyping import Float
 from nostalgin_core.address import house_numbers
 from nostalgin_core.arrays import Points
 from nostalgin_core.chain import Footprint, Ring, chain
-from nostalgin_core.cuboid import Shown, cuboid
+from nostalgin_core.cuboid import ASSUMED_M, Shown, cuboid
 from nostalgin_core.outline import nominal_headings
 from nostalgin_core.records import Assignment, Block, Building, Front
 
@@ -23,6 +23,7 @@ STREET_M = 18.3  # 60 feet from front to front: a side street of 1811
 AVENUE_M = 30.5  # 100 feet
 FALLBACK_GAP_M = 24.0
 NEIGHBOURS = 4
+WIDTH_SD, HEIGHT_SD = 0.4, 0.6  # of the logarithms: heights vary more than widths
 
 Aspects = Mapping[tuple[str, int], tuple[float, float]]  # aspect and its spread
 
@@ -78,13 +79,15 @@ def elevations(
 def with_seen_widths(
     fronts: Sequence[Front], shown: Mapping[str, Sequence[Shown]]
 ) -> list[Front]:
-    """Give assumed widths of corner buildings their true proportion.
+    """Mend assumed widths by the proportions of what a photograph shows.
 
-    Both fronts of a building are equally high, so that w2 = w1 a2 / a1: two facades of
-    one building specify its cuboid.
+    Both fronts of a building are equally high, so that w2 = w1 a2 / a1 where one width
+    is known: two facades specify the cuboid. Else width and height are both guesses:
+    with w0 the assumed width, h0 a common height and s their spreads (as logarithms),
+    the likeliest width is the weighted mean of ln w0 and ln(h0 a).
     """
     best = {
-        front_id: max(some, key=lambda one: one.score)
+        front_id: max(some, key=lambda one: (one.score, one.texture))
         for front_id, some in shown.items()
     }
     known = {
@@ -92,13 +95,18 @@ def with_seen_widths(
         for front in fronts
         if not front.width_assumed and front.front_id in best
     }
+    trust = WIDTH_SD**2 / (WIDTH_SD**2 + HEIGHT_SD**2)  # in the height
 
     def widened(front: Front) -> Front:
-        other = known.get((front.block, front.lot))
-        if not front.width_assumed or other is None or front.front_id not in best:
+        if not front.width_assumed or front.front_id not in best:
             return front
-        ratio = best[front.front_id].aspect / best[other.front_id].aspect
-        return replace(front, width_m=other.width_m * ratio)
+        aspect = best[front.front_id].aspect
+        other = known.get((front.block, front.lot))
+        if other is not None:
+            width_m = other.width_m * aspect / best[other.front_id].aspect
+        else:
+            width_m = front.width_m ** (1 - trust) * (ASSUMED_M * aspect) ** trust
+        return replace(front, width_m=width_m)
 
     return [widened(front) for front in fronts]
 

@@ -1,0 +1,151 @@
+import pytest
+
+from nostalgin_core import catalogue
+from nostalgin_core.address import house_numbers
+
+ARCHIVE = {
+    "Delete": "",
+    "Borough": "Manhattan",
+    "1940 Block Number": "993",
+    "1940 Lot Number": "1",
+    "1940 Building Number": "561-565",
+    "1940 Street Name": "7 Avenue",
+    "LOT FRONTAGE": "59.03",
+    "LOT DEPTH": "0.60",
+    "YEAR BUILT": "1925",
+    "Date": "1939-1941",
+    "File Name ": "nynyma_rec0040_1_00993_0001",
+}
+PLAIN = {
+    "photo": "west/12.jpg",
+    "block": "12",
+    "lot": "7",
+    "street": "Elm Street",
+    "address": "14",
+    "width_m": "6.5",
+}
+
+
+@pytest.mark.parametrize(
+    ("written", "feet", "inches"),
+    [
+        ("0.60", 60, 0),
+        ("0.20", 20, 0),
+        ("0.92", 92, 0),
+        ("1.25", 125, 0),
+        ("1.00", 100, 0),
+        ("2.43", 243, 0),
+        ("98.09", 98, 9),
+        ("203.10", 203, 10),
+        ("20.1", 20, 10),
+        ("50.05", 50, 5),
+        ("25.00", 25, 0),
+        ("25", 25, 0),
+        ("42.5", 42, 5),
+        (" 79.06 ", 79, 6),
+    ],
+)
+def test_mangled_feet_and_inches_are_read(written: str, feet: int, inches: int) -> None:
+    assert catalogue.feet(written) == pytest.approx(feet + inches / 12)
+
+
+def test_a_fraction_that_can_be_no_inches_is_decimal() -> None:
+    assert catalogue.feet("37.50") == pytest.approx(37.5)
+
+
+@pytest.mark.parametrize(
+    "written", ["", ".", "0", "0.05", "7.99", "-20", "wide", "9999"]
+)
+def test_what_makes_no_front_is_not_read(written: str) -> None:
+    assert catalogue.feet(written) is None
+
+
+@pytest.mark.parametrize(
+    ("address", "numbers"),
+    [
+        ("147", (147, 147)),
+        ("561-565", (561, 565)),
+        ("108-12", (108, 112)),
+        ("147A", (147, 147)),
+        ("17 1/2", (17, 17)),
+        ("115\u2013119", (115, 119)),
+        ("", None),
+        ("rear", None),
+    ],
+)
+def test_house_numbers(address: str, numbers: tuple[int, int] | None) -> None:
+    assert house_numbers(address) == numbers
+
+
+def test_the_archive_s_own_columns_are_known() -> None:
+    read = catalogue.read([ARCHIVE])
+    (entry,) = read.entries
+    assert (entry.block, entry.lot, entry.street) == ("993", "1", "7 Avenue")
+    assert entry.address == "561-565"
+    assert entry.width_m == pytest.approx(59.25 * 0.3048, abs=1e-3)
+    assert entry.depth_m == pytest.approx(60 * 0.3048, abs=1e-3)
+    assert entry.photo == "nynyma_rec0040_1_00993_0001"
+    assert not read.rejections
+    assert not read.warnings
+
+
+def test_lengths_of_a_later_building_are_left_out_with_a_warning() -> None:
+    read = catalogue.read([ARCHIVE | {"YEAR BUILT": "1964"}])
+    assert read.entries[0].width_m is None
+    assert "row 2" in read.warnings[0]
+    assert "1964" in read.warnings[0]
+
+
+def test_a_plain_catalogue_is_read_and_unknown_columns_are_named() -> None:
+    read = catalogue.read([PLAIN | {"mood": "grim"}], name="list.csv")
+    assert read.entries[0].width_m == 6.5
+    assert read.warnings == ("list.csv: column 'mood' is not known; it is kept",)
+
+
+@pytest.mark.parametrize(
+    ("cells", "reason"),
+    [
+        ({"photo": "../../etc/passwd"}, "path outside the photo folder"),
+        ({"photo": "/etc/passwd"}, "path outside the photo folder"),
+        ({"photo": "C:\\photo.jpg"}, "path outside the photo folder"),
+        ({"block": ""}, "no block"),
+        ({"lot": ""}, "no lot"),
+        ({"width_m": "wide"}, "nonsense width_m"),
+        ({"width_m": "-3"}, "nonsense width_m"),
+        ({"width_m": "0"}, "nonsense width_m"),
+        ({"side": "north"}, "nonsense side"),
+        ({"lot": "../1"}, "nonsense block or lot"),
+    ],
+)
+def test_a_nonsense_row_is_rejected_by_its_number_and_spoils_no_other(
+    cells: dict[str, str], reason: str
+) -> None:
+    read = catalogue.read([PLAIN, PLAIN | cells], name="list.csv")
+    assert len(read.entries) == 1
+    (rejection,) = read.rejections
+    assert rejection.key == "list.csv row 3"
+    assert rejection.reason == reason
+    assert rejection.detail
+
+
+def test_block_and_lot_come_from_the_file_name_where_columns_lack() -> None:
+    read = catalogue.read([{"photo": "nynyma_rec0040_1_00993_0008a.jpg"}])
+    assert (read.entries[0].block, read.entries[0].lot) == ("993", "8")
+
+
+def test_a_photo_finds_its_row_by_name_or_by_lot_or_is_rejected() -> None:
+    entries = catalogue.read([ARCHIVE]).entries
+    by_name, by_lot, unknown = (
+        "a/nynyma_rec0040_1_00993_0001.JPG",
+        "other_00993_0001b.jpg",
+        "holiday.jpg",
+    )
+    found, rejections = catalogue.matched(entries, [by_name, by_lot, unknown])
+    assert set(found) == {by_name, by_lot}
+    assert [one.key for one in rejections] == [unknown]
+
+
+def test_an_assumed_width_grows_with_the_house_numbers_it_takes() -> None:
+    one, three = catalogue.assumed_width("111"), catalogue.assumed_width("108-112")
+    assert one == pytest.approx(7.62)
+    assert one < three < 3 * one + 0.1
