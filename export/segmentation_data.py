@@ -121,7 +121,7 @@ def _box(mask: Bool[np.ndarray, "h w"]) -> tuple[int, int, int, int]:
 
 
 def view(
-    sample: Sample, rng: np.random.Generator, *, short_px: tuple[int, int] = (416, 600)
+    sample: Sample, rng: np.random.Generator, *, short_px: tuple[int, int] = (352, 544)
 ) -> Sample:
     """Scale, flip and cut a sample at random, as another camera would have.
 

@@ -42,7 +42,7 @@ class Schedule:
     batch: int = 2
     clip: float = 10.0
     decay: float = 0.995  # of the average: about the last 200 steps
-    short_px: tuple[int, int] = (416, 600)  # between which a photo's short side falls
+    short_px: tuple[int, int] = (352, 544)  # between which a photo's short side falls
     seed: int = 0
 
     def rate_at(self, step: int) -> float:
