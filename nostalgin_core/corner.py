@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-from nostalgin_core.chain import DEPTH_M
+from nostalgin_core.pieces import DEPTH_M
 from nostalgin_core.records import Front
 
 

@@ -19,32 +19,14 @@ A lot above 100 is a later split of the lot with its last two digits: 104 stands
 import itertools
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from nostalgin_core.address import house_numbers
 from nostalgin_core.catalogue import Entry, assumed_width
 from nostalgin_core.directions import Law, directions
 from nostalgin_core.records import Front
-
-
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """One lot on one street, before it has its place in a ring."""
-
-    block: str
-    lot: str
-    street: str
-    address: str
-    width_m: float | None
-    depth_m: float | None
-    ring: int | None
-    side: int | None
-    order: float | None
-    key: float  # along the block, by lot
-    number: float | None  # house number, the middle of a range
-    parity: int | None  # 1: odd, 0: even
+from nostalgin_core.spots import Spot, folded, spots
 
 
 def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]]:
@@ -82,55 +64,6 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
     return tuple(made), (*warnings, *doubts)
 
 
-def spots(rows: Sequence[Entry]) -> list[Spot]:
-    """Merge the rows of one block that are about the same lot on the same street."""
-    merged: dict[tuple[str, str], Spot] = {}
-    for position, row in enumerate(rows):
-        name = (row.lot, _street(row.street))
-        numbers = house_numbers(row.address)
-        spot = Spot(
-            block=row.block,
-            lot=row.lot,
-            street=row.street,
-            address=row.address,
-            width_m=row.width_m,
-            depth_m=row.depth_m,
-            ring=row.ring,
-            side=row.side,
-            order=row.order,
-            key=lot_key(row.lot, position) if row.order is None else row.order,
-            number=None if numbers is None else sum(numbers) / 2,
-            parity=None if numbers is None else numbers[0] % 2,
-        )
-        known = merged.get(name)
-        merged[name] = spot if known is None else _joined(known, spot)
-    return sorted(merged.values(), key=lambda spot: spot.key)
-
-
-def _joined(first: Spot, second: Spot) -> Spot:
-    """Keep what the first row says, and what only the second does."""
-    empty = {
-        name: getattr(second, name)
-        for name in ("address", "width_m", "depth_m", "ring", "side", "order")
-        if getattr(first, name) in (None, "")
-    }
-    if first.number is None:
-        empty |= {"number": second.number, "parity": second.parity}
-    return replace(first, **empty)
-
-
-def _street(street: str) -> str:
-    return street.casefold().strip(" .")
-
-
-def lot_key(lot: str, position: int) -> float:
-    """Tell where along the block a lot lies; lots that are no numbers go by row."""
-    if not lot.isdecimal():
-        return float(position)
-    number = int(lot)
-    return number % 100 + 0.5 if 100 < number < 200 else float(number)
-
-
 def as_given(some: Sequence[Spot]) -> list[Front]:
     """Take sides and orders from the catalogue."""
     ordered = sorted(
@@ -165,12 +98,12 @@ def _with_parities(some: Sequence[Spot]) -> list[Spot]:
     """Give a lot without a number the parity of the lot before it on its street."""
     last: dict[str, int | None] = {}
     for spot in reversed(some):  # so that a first lot takes that of the one after it
-        last[_street(spot.street)] = (
-            spot.parity if spot.parity is not None else last.get(_street(spot.street))
+        last[folded(spot.street)] = (
+            spot.parity if spot.parity is not None else last.get(folded(spot.street))
         )
     given = []
     for spot in some:
-        street = _street(spot.street)
+        street = folded(spot.street)
         parity = last.get(street) if spot.parity is None else spot.parity
         last[street] = parity
         given.append(replace(spot, parity=parity))
@@ -186,7 +119,7 @@ def cuts(some: Sequence[Spot]) -> list[str]:
     runs: dict[str, list[int]] = defaultdict(list)
     for spot in some:
         if spot.parity is not None:
-            runs[_street(spot.street)].append(spot.parity)
+            runs[folded(spot.street)].append(spot.parity)
     return [
         street
         for street, parities in runs.items()
@@ -197,9 +130,9 @@ def cuts(some: Sequence[Spot]) -> list[str]:
 
 def _nearest_parity(ring: Sequence[Spot], street: str, spot: Spot) -> int | None:
     """Tell on which side of a cutting street a lot lies, by its neighbours along it."""
-    if _street(spot.street) == street:
+    if folded(spot.street) == street:
         return spot.parity
-    along = [one for one in ring if _street(one.street) == street]
+    along = [one for one in ring if folded(one.street) == street]
     if not along:
         return None
     turn = max(one.key for one in ring) - min(one.key for one in ring) + 1.0
@@ -220,7 +153,7 @@ def sides_of(ring: Sequence[Spot]) -> list[list[Spot]]:
     """
     groups: dict[str, list[int]] = defaultdict(list)
     for place, spot in enumerate(ring):
-        groups[_street(spot.street)].append(place)
+        groups[folded(spot.street)].append(place)
     angles = {
         street: float(
             np.angle(np.exp(2j * np.pi * np.array(places) / len(ring)).sum())
@@ -252,10 +185,10 @@ def _complete(
     """Put an empty side beside a cutting street, where the other ring has a street."""
     if not side or not _cut_between(side, other):
         return
-    streets = [_street(one[0].street) if one else "" for one in other]
-    here = streets.index(_street(side[0].street))
+    streets = [folded(one[0].street) if one else "" for one in other]
+    here = streets.index(folded(side[0].street))
     before, after = streets[(here + 1) % len(other)], streets[here - 1]
-    own = {_street(one[0].street) for one in ring if one}
+    own = {folded(one[0].street) for one in ring if one}
     place = ring.index(side)
     if after not in own and len(ring) < 4:
         ring.insert(place + 1, [])
@@ -266,7 +199,7 @@ def _complete(
 def _cut_between(side: Sequence[Spot], other: Sequence[Sequence[Spot]]) -> bool:
     return any(
         one
-        and _street(one[0].street) == _street(side[0].street)
+        and folded(one[0].street) == folded(side[0].street)
         and {spot.parity for spot in one}.isdisjoint({spot.parity for spot in side})
         for one in other
     )
@@ -293,7 +226,7 @@ def side_facts(ring: Sequence[Sequence[Spot]]) -> list[tuple[str, int, float] | 
         keys = [(place[one.key, one.lot] - start) % turn for one in known]
         numbers = [one.number or 0.0 for one in known]
         parity = 1 if known[0].parity else -1
-        facts.append((_street(side[0].street), parity, _agreement(keys, numbers)))
+        facts.append((folded(side[0].street), parity, _agreement(keys, numbers)))
     return facts
 
 
@@ -309,7 +242,7 @@ def in_order(side: Sequence[Spot], law: Law) -> list[Spot]:
     if not any(spot.number is not None for spot in side):
         return sorted(side, key=lambda spot: spot.key)
     parity = next(1 if one.parity else -1 for one in side if one.number is not None)
-    rising = law.get(_street(side[0].street), 1) * parity
+    rising = law.get(folded(side[0].street), 1) * parity
     known = [one for one in side if one.number is not None]
 
     def place(spot: Spot) -> tuple[float, float]:
@@ -342,7 +275,7 @@ def started(sides: Sequence[list[Spot]]) -> list[list[Spot]]:
     """Begin a ring with its first side street, and never end it with an empty side."""
     starts = [index for index in range(len(sides)) if sides[index - 1] and sides[index]]
     named = [
-        i for i in starts if _street(sides[i][0].street).endswith(("street", " st"))
+        i for i in starts if folded(sides[i][0].street).endswith(("street", " st"))
     ]
     first = (named or starts or [0])[0]
     return [*sides[first:], *sides[:first]]

@@ -1,0 +1,134 @@
+"""What each side of a ring is made of: a piece for every building that stands on it.
+
+Every corner belongs to one building, which has a piece on both its sides. The pieces of
+a side are then fitted to its length, once the ring is closed.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from nostalgin_core.address import house_numbers
+from nostalgin_core.records import Front
+
+DEPTH_M = 18.0  # a lot is commonly 60 to 100 feet deep
+KNOWN_SD, ASSUMED_SD = 0.03, 0.4  # relative, of a width
+DEPTH_SD = 0.25  # of a width that is another front's depth
+GROWTH = 1.35  # an assumed width grows by no more: beyond, a gap is left open
+CLOSED_GAP = 0.03  # of a side's length
+UNKNOWN_JUMP = 3  # next doors are 2 apart: rather there than between those
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A stretch of one side that belongs to one building."""
+
+    building_id: str
+    front_id: str | None  # None: the side wall of a corner building
+    width_m: float
+    width_sd: float  # relative
+    depth_m: float
+    numbers: tuple[int, int] | None  # house numbers, to see where lots are missing
+
+
+def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
+    """Sort fronts into sides; a side without fronts stays empty."""
+    present = {front.side for front in fronts}
+    count = 4 if present == {0, 2} else max(present) + 1
+    sides: list[list[Piece]] = [[] for _ in range(count)]
+    for front in sorted(fronts, key=lambda front: front.rank):
+        sides[front.side].append(
+            Piece(
+                building_id=f"{front.block}-{front.lot}",
+                front_id=front.front_id,
+                width_m=front.width_m,
+                width_sd=ASSUMED_SD if front.width_assumed else KNOWN_SD,
+                depth_m=front.depth_m or DEPTH_M,
+                numbers=house_numbers(front.address),
+            )
+        )
+    return sides
+
+
+def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
+    """Give every corner to one building, which then has a piece on both sides.
+
+    Where no building has fronts on both, the last of the side that ends or the first
+    of the side that starts gets it: the one on the side with fewer fronts, for on a
+    short side (the avenue) lots reach round the corner. Its depth is its other width.
+    A side without fronts belongs to its neighbour that comes first, to its far corner.
+    """
+    whole = [list(side) for side in sides]
+    count = len(sides)
+    for here in range(count if count > 2 else count - 1):
+        there = (here + 1) % count
+        last = whole[here][-1] if whole[here] else None
+        first = whole[there][0] if whole[there] else None
+        if last and first and last.building_id == first.building_id:
+            continue
+        if last and first and len(sides[here]) <= len(sides[there]):
+            whole[there].insert(0, _round_the_corner(last))
+        elif first:
+            whole[here].append(_round_the_corner(first))
+        elif last and sides[here]:
+            whole[there].insert(0, _round_the_corner(last))
+    return whole
+
+
+def _round_the_corner(piece: Piece) -> Piece:
+    return replace(
+        piece,
+        front_id=None,
+        width_m=piece.depth_m,
+        width_sd=DEPTH_SD,
+        depth_m=piece.width_m,
+        numbers=None,
+    )
+
+
+def relative_sd(side: Sequence[Piece]) -> float:
+    """Tell how far a side's length is known, from its pieces."""
+    sds_m = [piece.width_m * piece.width_sd for piece in side]
+    return float(np.hypot.reduce(sds_m)) / sum(piece.width_m for piece in side)
+
+
+def fitted(side: Sequence[Piece], length_m: float) -> list[tuple[float, float]]:
+    """Fit a side's pieces to its length; return each one's start and end along it.
+
+    A piece changes by a factor exp(s^2 k) with its relative spread s and one k for the
+    side, so that what was measured well hardly moves. Where that would stretch an
+    assumed width beyond `GROWTH`, the rest is left open where the house numbers jump
+    most; an opening under `CLOSED_GAP` of the side is closed by scaling.
+    """
+    if not side:
+        return []
+    width_m = np.array([piece.width_m for piece in side])
+    variance = np.array([piece.width_sd**2 for piece in side])
+
+    def surplus(k: float) -> float:
+        return float((width_m * np.exp(variance * k)).sum()) - length_m
+
+    most = float(np.log(GROWTH)) / ASSUMED_SD**2
+    least = float(np.log(length_m / 2 / width_m.sum()) / variance.min())
+    k = most if surplus(most) <= 0 else brentq(surplus, min(least, -1.0), most)
+    width_m = width_m * np.exp(variance * k)
+    open_m = length_m - float(width_m.sum())
+    if len(side) == 1 or open_m < CLOSED_GAP * length_m:
+        width_m, open_m = width_m * length_m / width_m.sum(), 0.0
+    starts_m = np.concatenate([[0.0], np.cumsum(width_m)[:-1]])
+    starts_m[_widest_jump(side) + 1 :] += open_m
+    return [(float(a), float(a + w)) for a, w in zip(starts_m, width_m, strict=True)]
+
+
+def _widest_jump(side: Sequence[Piece]) -> int:
+    """Tell after which piece lots are most likely missing."""
+    jumps = [
+        max(b.numbers[0] - a.numbers[1], a.numbers[0] - b.numbers[1])
+        if a.numbers and b.numbers
+        else UNKNOWN_JUMP
+        for a, b in itertools.pairwise(side)
+    ]
+    return int(np.argmax(jumps)) if jumps else 0
