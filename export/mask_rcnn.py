@@ -120,7 +120,7 @@ class Backbone(nn.Module):
 class MaskRCNN(nn.Module):
     """Backbone, region proposals, box head and mask head in one module."""
 
-    def __init__(self, *, detections: int = 40, score: float = 0.1) -> None:
+    def __init__(self, *, detections: int = 40, score: float = 0.2) -> None:
         """Keep at most `detections` things, each surer than `score`.
 
         40 is twice what a photograph of the training set shows; every mask costs time.

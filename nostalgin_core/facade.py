@@ -1,6 +1,7 @@
 """Instances become fronts: each pixel belongs to one, and one building is meant.
 
-Where two fronts overlap, a pixel goes to the more probable one. What stands before a
+Where two fronts overlap, a pixel goes to the more probable one: the probability that it
+belongs to the front, times the score, the probability that there is such a front. What stands before a
 front is taken off its visible mask and given back in its amodal one.
 """
 
@@ -110,12 +111,13 @@ def _apart(
         [i for i in instances if i.category == "facade"], least, swallowed
     )
     shape = photo.image.shape
-    best = np.full(shape, least, np.float32)
+    best = np.zeros(shape, np.float32)
     owner = np.full(shape, -1, np.int16)
     for i, facade in enumerate(facades):
         x0, y0, x1, y1 = facade.box
-        surer = facade.probability > best[y0:y1, x0:x1]
-        best[y0:y1, x0:x1][surer] = facade.probability[surer]
+        likely = facade.probability * facade.score
+        surer = (facade.probability > least) & (likely > best[y0:y1, x0:x1])
+        best[y0:y1, x0:x1][surer] = likely[surer]
         owner[y0:y1, x0:x1][surer] = i
     x0, y0, x1, y1 = photo.frame
     enough = smallest * (x1 - x0) * (y1 - y0)
