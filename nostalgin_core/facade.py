@@ -1,8 +1,9 @@
 """Instances become fronts: each pixel belongs to one, and one building is meant.
 
-Where two fronts overlap, a pixel goes to the more probable one: the probability that it
-belongs to the front, times the score, the probability that there is such a front. What stands before a
-front is taken off its visible mask and given back in its amodal one.
+Where two fronts overlap, a pixel goes to the likelier one: the probability that it
+belongs to the front, times the score, which is the probability that there is such a
+front. What stands before a front is taken off its visible mask and given back in its
+amodal one.
 """
 
 from collections.abc import Sequence
