@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from nostalgin_core.arrays import Alpha
+from nostalgin_core.arrays import Alpha, Gray, Mask
 from nostalgin_core.records import Elevation, Instance, Matted
 
 STEPS = 255
@@ -19,6 +19,13 @@ def soft(values: Alpha) -> Alpha:
     """Round values of 0 to 1 to the nearest of 256 levels; doing it twice is once."""
     levels = np.clip(np.rint(np.asarray(values, np.float64) * STEPS), 0, STEPS)
     return (levels / STEPS).astype(np.float32)
+
+
+def levels(image: Gray | Mask | Alpha) -> Gray:
+    """Write a gray image, a mask or a soft mask as whole levels of 0 to 255."""
+    if image.dtype == np.uint8:
+        return image
+    return np.rint(image.astype(np.float64) * STEPS).astype(np.uint8)
 
 
 def instances(found: tuple[Instance, ...]) -> tuple[Instance, ...]:

@@ -9,17 +9,18 @@ import resource
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
 import cv2
 import numpy as np
 
-from nostalgin_core import lines, steps
+from nostalgin_core import lines, quantise, steps
 from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Elevation, Facade, Instance, Photo, Rejection
 from nostalgin_core.steps import Networks, Stages
-from pipelines import draw, tables
+from pipelines import draw
 from pipelines.panel import panel
 
 NAME: Final = "photo"  # what stages are told the photo is called
@@ -91,7 +92,7 @@ def written(made: Stages, photo: Photo, out: Path) -> dict[str, Any]:
             for one in facades
         ],
         "occluders": occluder_entries(made, photo, out),
-        "placard": None if made.placard is None else tables.to_row(made.placard),
+        "placard": None if made.placard is None else asdict(made.placard),
         "rejections": [rejection_entry(one) for one in made.rejections],
     }
 
@@ -105,9 +106,9 @@ def facade_entry(
         "score": float(np.clip(facade.score, 0, 1)),
         "target": bool(facade.target),
         "target_score": float(facade.target_score),
-        "mask": saved(out, f"{name}_mask", tables.levels(facade.mask)),
-        "amodal": saved(out, f"{name}_amodal", tables.levels(facade.amodal)),
-        "alpha": saved(out, f"{name}_alpha", tables.levels(facade.alpha)),
+        "mask": saved(out, f"{name}_mask", quantise.levels(facade.mask)),
+        "amodal": saved(out, f"{name}_amodal", quantise.levels(facade.amodal)),
+        "alpha": saved(out, f"{name}_alpha", quantise.levels(facade.alpha)),
     }
     if view is None:
         empty = ("quad", "photo_from_elevation", "focal_px", "aspect")
@@ -152,7 +153,7 @@ def occluder_entries(made: Stages, photo: Photo, out: Path) -> list[dict[str, An
         {
             "category": category,
             "score": float(np.clip(score, 0, 1)),
-            "mask": saved(out, f"occluder_{number}_{category}", tables.levels(mask)),
+            "mask": saved(out, f"occluder_{number}_{category}", quantise.levels(mask)),
         }
         for number, (category, score, mask) in enumerate(found)
     ]

@@ -98,7 +98,7 @@ def to_cell(value: Any, kind: Any) -> Any:
     if value is None or kind in PLAIN:
         return value
     if kind in IMAGES:
-        return to_png(levels(value))
+        return to_png(quantise.levels(value))
     if kind in SHAPES:
         return np.asarray(value, np.float64).ravel().tolist()
     return list(value) if isinstance(value, tuple) else value
@@ -122,15 +122,8 @@ def nested(value: Any) -> Any:
     return tuple(map(nested, value)) if isinstance(value, list) else value
 
 
-def levels(image: np.ndarray) -> np.ndarray:
-    """Write a gray image, a mask or a soft mask as whole levels of 0 to 255."""
-    if image.dtype == np.uint8:
-        return image
-    return np.rint(image.astype(np.float64) * quantise.STEPS).astype(np.uint8)
-
-
 def from_levels(image: np.ndarray, kind: Any) -> np.ndarray:
-    """Read back what `levels` wrote."""
+    """Read back what `quantise.levels` wrote."""
     if kind in SOFT:
         return quantise.soft(image / quantise.STEPS)
     return image if kind in BYTES else image > 0
