@@ -28,7 +28,9 @@ JUDGED_PX = 160_000  # larger fronts are judged at this size
 LEAST_OVERLAP = 0.08  # of all known texels: an agreement of fewer is chance
 LEAST_AGREEMENT = 0.12  # correlation of a peak that is worth trying
 DOUBT = 0.02  # share of a neighbourhood that must be known to outweigh the whole front
-FAVOUR = 12.0  # a correlation higher by 0.1 weighs about three times as much
+SHADED = 0.5  # how far the membrane is believed about shade, where nothing else tells
+FAVOUR = 10.0  # a correlation higher by 0.1 weighs nearly three times as much
+RIM_PX = 4  # width of the fade at the rim of what can be copied
 NOISE = 2.0  # gray levels: what varies less agrees by chance
 
 
@@ -50,7 +52,8 @@ def autocorrelation(values: Values, known: Mask) -> Spread:
     """Correlate what is known with itself at every offset; the centre is offset zero.
 
     r(o) = sum v(p) v(p + o) / sqrt(sum v(p)^2 sum v(p + o)^2), each sum over the texels
-    known at both p and p + o; zero where they are too few.
+    known at both p and p + o, with the noise added below the line; zero where they
+    are too few.
     """
     h, w = values.shape
     shape = [fft.next_fast_len(2 * n, real=True) for n in (h, w)]
@@ -64,7 +67,8 @@ def autocorrelation(values: Values, known: Mask) -> Spread:
 
     overlap = spread(m.conj() * m)
     energy = spread(m.conj() * v2) * spread(v2.conj() * m)
-    r = spread(v.conj() * v) / np.sqrt(np.maximum(energy, 1e-6 * energy.max() + 1e-9))
+    norm = np.sqrt(np.maximum(energy, 0)) + NOISE**2 * np.maximum(overlap, 1)
+    r = spread(v.conj() * v) / norm
     return np.where(overlap > LEAST_OVERLAP * known.sum(), r, 0).astype(np.float32)
 
 
@@ -120,10 +124,11 @@ def agreements(
 
     Agreement is the correlation of the detail here with the detail where the offset
     leads. Where too little is known at both ends, as deep inside a hole, the offset's
-    correlation over the whole front stands in.
+    correlation over the whole front stands in, and the membrane tells the shade.
     """
     size = (2 * reach(values) + 1,) * 2
     plain = detail(values, known, radius=reach(values))
+    base = cv2.blur(fill(values, ~known), size)
     for o, rate in zip(choices, rates, strict=True):
         there = shifted(known, o)
         both = (there & known).astype(np.float32)
@@ -141,7 +146,15 @@ def agreements(
         norm = np.sqrt(np.maximum(own * other, 0)) + NOISE**2 * share
         r = dot / np.maximum(norm, 1e-6)
         r = (r * share + DOUBT * rate) / (share + DOUBT)
-        yield np.where(there, r, 0).clip(0, 1), shade / (share + DOUBT)
+        shade = (shade + DOUBT * SHADED * (base - shifted(base, o))) / (share + DOUBT)
+        yield np.where(there, r, 0).clip(0, 1), shade
+
+
+def _inward(there: Mask) -> Values:
+    """Rise from 0 at the rim of what can be copied to 1 inside, to hide the rim."""
+    size = (2 * RIM_PX + 1,) * 2
+    near = cv2.blur(there.astype(np.float32), size, borderType=cv2.BORDER_REPLICATE)
+    return np.where(there, 2 * near - 1, 0).clip(0, 1).astype(np.float32)
 
 
 def copy(values: Values, known: Mask) -> tuple[Values, Values]:
@@ -167,7 +180,7 @@ def copy(values: Values, known: Mask) -> tuple[Values, Values]:
     judged = agreements(small, seen, np.round(choices).astype(int), rates)
     for o, maps in zip(full, judged, strict=True):
         r, shade = maps if shrink == 1 else (cv2.resize(a, (w, h)) for a in maps)
-        weight = np.expm1(FAVOUR * r) * shifted(known, o)
+        weight = np.expm1(FAVOUR * r) * _inward(shifted(known, o))
         total += weight * (shifted(values, o) + shade)
         weights += weight
         trust = np.maximum(trust, np.where(weight > 0, r, 0))
