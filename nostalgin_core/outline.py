@@ -28,7 +28,7 @@ Unknowns = np.ndarray  # a growth and a turn for each side, in units of their sp
 
 STRETCH_SD = 0.5  # a catalogue of photographs lists perhaps two lots in three
 UNKNOWN_SD = 10.0  # of a side that nothing is known about
-FREE_SD_RAD = 3.0  # of a heading in a rectangular grid that it cuts: lengths decide
+FREE_SD_RAD = 1.0  # of a heading in a grid that it cuts: lengths mostly decide
 POLYGON_SD_RAD = 0.3  # of a heading where there are not four sides
 
 

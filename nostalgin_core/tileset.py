@@ -38,6 +38,7 @@ class Tile:
     high_m: tuple[float, float, float]
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
     place: Place | None = None  # in place of origin_m, where it is known
+    turn_rad: float = 0.0  # of its frame in the city's, anticlockwise
 
 
 def ecef_from_enu(place: Place) -> Matrix4:
@@ -100,6 +101,8 @@ def city_from_block(tile: Tile, place: Place | None) -> Matrix4:
             raise ValueError(f"{tile.uri} has a place on the globe, its city has none")
         return np.linalg.inv(ecef_from_enu(place)) @ ecef_from_enu(tile.place)
     matrix = np.eye(4)
+    cos, sin = np.cos(tile.turn_rad), np.sin(tile.turn_rad)
+    matrix[:2, :2] = [[cos, -sin], [sin, cos]]
     matrix[:2, 3] = tile.origin_m
     return matrix
 

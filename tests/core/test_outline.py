@@ -21,7 +21,7 @@ def measured(
             length,
             sd,
             float(heading),
-            (3.0 if len(lengths_m) == 4 else 0.3) if side in free else 0.0,
+            (1.0 if len(lengths_m) == 4 else 0.3) if side in free else 0.0,
         )
         for side, (length, heading) in enumerate(zip(lengths_m, headings, strict=True))
     ]
@@ -80,8 +80,8 @@ def test_a_free_side_finds_the_slant_of_a_true_trapezoid() -> None:
     slant = float(np.hypot(17.0, 60.0))
     sides = measured([65.0, slant, 48.0, 60.0], free=frozenset({1}))
     closed_m, headings = outline.close(sides)
-    np.testing.assert_allclose(closed_m, [65.0, slant, 48.0, 60.0], rtol=0.02)
-    np.testing.assert_allclose(headings[1], np.pi / 2 + np.arctan2(17, 60), atol=0.02)
+    np.testing.assert_allclose(closed_m, [65.0, slant, 48.0, 60.0], rtol=0.05)
+    np.testing.assert_allclose(headings[1], np.pi / 2 + np.arctan2(17, 60), atol=0.06)
 
 
 def test_corners_start_at_the_origin_and_follow_the_sides() -> None:
