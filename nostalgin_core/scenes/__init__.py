@@ -1,7 +1,7 @@
 """Painted streets: a 1940s neighbourhood with exact truth for every photo of it."""
 
 from nostalgin_core.scenes.catalogue import catalogue_rows, photo_name
-from nostalgin_core.scenes.photograph import photograph
+from nostalgin_core.scenes.photograph import album, photograph
 from nostalgin_core.scenes.street import Lot, Neighbourhood, PaintedBlock, neighbourhood
 from nostalgin_core.scenes.truth import PaintedPhoto, TrueFacade, TrueOccluder, Truth
 
@@ -13,6 +13,7 @@ __all__ = [
     "TrueFacade",
     "TrueOccluder",
     "Truth",
+    "album",
     "catalogue_rows",
     "neighbourhood",
     "photo_name",

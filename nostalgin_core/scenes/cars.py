@@ -13,12 +13,31 @@ from nostalgin_core.scenes.sprite import Patch, Sprite, cut_out
 
 # Outlines as rows of x along the car from the tail, z up, in metres.
 SEDAN = np.array(
-    [[0.05, 0.42], [0.0, 0.75], [0.25, 1.1], [0.75, 1.5], [1.25, 1.68], [2.2, 1.7]]
-    + [[2.62, 1.6], [2.95, 1.18], [3.5, 1.14], [4.25, 1.02], [4.42, 0.8], [4.4, 0.42]]
+    [
+        [0.05, 0.42],
+        [0.0, 0.75],
+        [0.25, 1.1],
+        [0.75, 1.5],
+        [1.25, 1.68],
+        [2.2, 1.7],
+        [2.62, 1.6],
+        [2.95, 1.18],
+        [3.5, 1.14],
+        [4.25, 1.02],
+        [4.42, 0.8],
+        [4.4, 0.42],
+    ]
 )
 BONNET = np.array(
-    [[0.3, 0.4], [0.3, 0.9], [2.9, 1.18], [3.6, 1.14], [4.3, 1.03], [4.5, 0.75]]
-    + [[4.45, 0.38]]
+    [
+        [0.3, 0.4],
+        [0.3, 0.9],
+        [2.9, 1.18],
+        [3.6, 1.14],
+        [4.3, 1.03],
+        [4.5, 0.75],
+        [4.45, 0.38],
+    ]
 )
 SIDE_GLASS = (
     np.array([[0.95, 1.16], [1.15, 1.45], [1.55, 1.55], [1.6, 1.16]]),
@@ -31,8 +50,15 @@ FENDERS = (
         [[0.1, 0.4], [0.12, 0.7], [0.4, 0.92], [0.85, 0.95], [1.25, 0.75], [1.45, 0.42]]
     ),
     np.array(
-        [[2.75, 0.4], [3.05, 0.62], [3.35, 0.86], [3.8, 0.9], [4.3, 0.8], [4.5, 0.5]]
-        + [[4.45, 0.4]]
+        [
+            [2.75, 0.4],
+            [3.05, 0.62],
+            [3.35, 0.86],
+            [3.8, 0.9],
+            [4.3, 0.8],
+            [4.5, 0.5],
+            [4.45, 0.4],
+        ]
     ),
 )
 BOARD = np.array([[1.3, 0.3], [1.3, 0.42], [3.0, 0.42], [3.0, 0.3]])
@@ -53,8 +79,11 @@ def park(
     shape: tuple[int, int],
     middle_m: tuple[float, float],
     heading_deg: float,
-) -> Sprite | None:
-    """Stand a car on the road; heading turns its nose from east towards north."""
+) -> list[Sprite]:
+    """Stand a car and its shadow on the road.
+
+    The heading turns its nose from east towards north.
+    """
     truck = rng.random() < 0.2
     length = 5.5 if truck else 4.5
     turn = np.deg2rad(heading_deg)
@@ -72,17 +101,17 @@ def park(
 
     depth = float(lens.see(camera, base[None])[0, 2])
     if depth < 2.2:
-        return None
+        return []
     slices = (truck_slices if truck else sedan_slices)(rng)
     order = sorted(slices, key=lambda item: item[0] if near_left else -item[0])
     patches: list[Patch] = []
     for across, outline, tone in order:
         places = place(outline, across)
         if lens.see(camera, places)[:, 2].min() < 0.5:
-            return None
+            return []
         patches.append((lens.project(camera, places), tone))
     moving = rng.random() < 0.12
-    return cut_out(
+    body = cut_out(
         "vehicle",
         depth,
         patches,
@@ -90,14 +119,28 @@ def park(
         drift_px=float(rng.uniform(4, 22)) if moving else 0.0,
         blur_px=0.7 if depth > 4 else 2.0,
     )
+    print_m = wheel(0.0, 1.0) - [0.0, 1.0]
+    pool = base + (0.55 * length * print_m[:, :1]) * along + print_m[:, 1:] * left
+    shade = shadow_on_ground(camera, shape, pool, depth + 0.01)
+    return [sprite for sprite in (shade, body) if sprite]
 
 
-def wheel(middle_m: float, radius_m: float) -> np.ndarray:
-    """Outline a wheel."""
+def shadow_on_ground(
+    camera: Camera, shape: tuple[int, int], outline_m: np.ndarray, depth_m: float
+) -> Sprite | None:
+    """Darken the ground where something stands on it."""
+    if lens.see(camera, outline_m)[:, 2].min() < 0.5:
+        return None
+    pixels = lens.project(camera, outline_m)
+    soft = float(np.clip(0.06 * camera.focal_px / depth_m, 0.5, 14.0))
+    return cut_out(None, depth_m, [(pixels, 22.0)], shape, blur_px=soft, opacity=0.62)
+
+
+def wheel(middle_m: float, radius_m: float, *, up_m: float = 0.0) -> np.ndarray:
+    """Outline a wheel, or something round, that rests at this height."""
     turn = np.linspace(0, 2 * np.pi, 18, endpoint=False)
-    return np.column_stack(
-        [middle_m + radius_m * np.cos(turn), radius_m * (1 + np.sin(turn))]
-    )
+    high = up_m + radius_m * (1 + np.sin(turn))
+    return np.column_stack([middle_m + radius_m * np.cos(turn), high])
 
 
 Slice = tuple[float, np.ndarray, float]
@@ -105,8 +148,8 @@ Slice = tuple[float, np.ndarray, float]
 
 def sedan_slices(rng: np.random.Generator) -> list[Slice]:
     """List the slices of a car as distance across, outline, tone."""
-    paint = float(rng.choice([28, 38, 52, 75, 105, 150, 190]))
-    top = min(paint * 1.25 + 34, 235.0)
+    paint = float(rng.choice([26, 32, 40, 52, 70, 95, 140, 185]))
+    top = min(paint * 1.3 + 46, 235.0)
     slices: list[Slice] = []
     for y in np.linspace(-0.55, 0.55, 12):
         slices.append((float(y), BONNET, paint * 0.9 + 20))
@@ -147,12 +190,12 @@ def sedan_side(
         side.append((sign * float(y), BOARD, 30.0))
     for x in WHEELS:
         side.append((sign * 0.85, wheel(x, 0.34), 22.0))
-        rim = wheel(x, 0.21) + [0.0, 0.13]
+        rim = wheel(x, 0.21, up_m=0.13)
         side.append((sign * 0.86, rim, float(rng.choice([70, 150, 190]))))
-        hub = wheel(x, 0.09) + [0.0, 0.25]
+        hub = wheel(x, 0.09, up_m=0.25)
         side.append((sign * 0.865, hub, 200.0))
     for y in (0.48, 0.55, 0.6):
-        lamp = wheel(4.2, 0.13) + [0.0, 0.66]
+        lamp = wheel(4.2, 0.13, up_m=0.66)
         side.append((sign * y, lamp, 150.0 if y < 0.6 else 205.0))
     for x in (-0.05, 4.55):
         bumper = np.array([[x, 0.4], [x, 0.52], [x + 0.06, 0.52], [x + 0.06, 0.4]])
@@ -189,5 +232,5 @@ def truck_slices(rng: np.random.Generator) -> list[Slice]:
         for x in TRUCK_WHEELS:
             slices.append((sign * 0.86, wheel(x, 0.44), 18.0))
             slices.append((sign * 0.97, wheel(x, 0.42), 26.0))
-            slices.append((sign * 0.98, wheel(x, 0.24) + [0.0, 0.18], 110.0))
+            slices.append((sign * 0.98, wheel(x, 0.24, up_m=0.18), 110.0))
     return slices

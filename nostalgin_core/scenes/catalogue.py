@@ -62,7 +62,7 @@ def row(lot: Lot, view: int) -> dict[str, str]:
     """Fill in one row."""
     by_avenue = sorted(lot.fronts, key=lambda front: front.side % 2 == 0)
     main, *other = by_avenue
-    filled = dict.fromkeys(BLANK, "")
+    filled: dict[str, str] = dict.fromkeys(map(str, BLANK), "")
     filled |= {
         "Borough": "Manhattan",
         "QC": "*",

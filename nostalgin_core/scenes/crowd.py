@@ -43,19 +43,21 @@ def populate(
 ) -> list[Sprite]:
     """Fill the street: each kerb in view gets cars, people, lamps and the odd tree."""
     found: list[Sprite | None] = []
-    busy = rng.uniform(0.15, 0.65)
-    crowded = rng.uniform(0.02, 0.13)
+    busy = rng.uniform(0.2, 0.85)
+    crowded = rng.uniform(0.02, 0.16)
     for start, along, out, long in kerbs(blocks):
         heading = float(np.rad2deg(np.arctan2(along[1], along[0])))
         at = rng.uniform(2.0, 6.0)
         while at < long - 4.0:
             middle = start + along * at + out * (PAVEMENT_M + rng.uniform(1.1, 1.4))
-            if rng.random() < busy and inview(camera, middle, shape):
+            free = far(camera, middle, 6.5) and inview(camera, middle, shape)
+            if rng.random() < busy and free:
                 turn = heading + 180.0 * (rng.random() < 0.3)
-                found.append(
+                found.extend(
                     cars.park(rng, camera, shape, (middle[0], middle[1]), turn)
                 )
             at += rng.uniform(5.4, 7.5)
+        found.extend(traffic(rng, camera, shape, (start, along, out, long)))
         for step in np.arange(0.5, long, 0.5):
             if rng.random() < crowded:
                 feet = start + along * step + out * rng.uniform(0.6, PAVEMENT_M - 0.4)
@@ -63,6 +65,24 @@ def populate(
                     found.append(people.stand(rng, camera, shape, (feet[0], feet[1])))
         found.extend(furniture(rng, camera, shape, (start, along, out, long)))
     return [sprite for sprite in found if sprite]
+
+
+def traffic(
+    rng: np.random.Generator,
+    camera: Camera,
+    shape: tuple[int, int],
+    kerb: tuple[np.ndarray, np.ndarray, np.ndarray, float],
+) -> list[Sprite]:
+    """Let a car or two drive by, at least eight metres before the camera."""
+    start, along, out, long = kerb
+    found: list[Sprite] = []
+    heading = float(np.rad2deg(np.arctan2(along[1], along[0])))
+    for _ in range(int(rng.poisson(0.25))):
+        at = rng.uniform(0.0, long)
+        place = start + along * at + out * (PAVEMENT_M + rng.uniform(3.8, 4.8))
+        if inview(camera, place, shape) and far(camera, place, 8.0):
+            found.extend(cars.park(rng, camera, shape, (place[0], place[1]), heading))
+    return found
 
 
 def far(camera: Camera, place_m: np.ndarray, least_m: float) -> bool:
@@ -122,7 +142,7 @@ def fittings(
                 cut = np.sort(rng.uniform(0.05, 0.95, 2))
                 left, right = (start + share * (end - start) for share in cut)
                 if np.linalg.norm(right - left) > 1.5:
-                    found.append(props.awning(rng, camera, shape, left, right, out))
+                    found.append(props.awning(rng, camera, shape, left, right, out=out))
     return [sprite for sprite in found if sprite]
 
 

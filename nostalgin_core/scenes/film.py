@@ -39,16 +39,20 @@ def develop(rng: np.random.Generator, light: Plane, inside: Plane) -> Gray:
     h, w = light.shape
     unit = w / 560
     glow = cv2.GaussianBlur(np.maximum(light - 170, 0), (0, 0), 7 * unit)
-    veil = rng.uniform(6, 20)
+    veil = rng.uniform(2, 14)
     tone = veil + (1 - veil / 255) * light + 0.12 * glow
     y, x = np.mgrid[-1 : 1 : h * 1j, -1 : 1 : w * 1j].astype(np.float32)
     tone *= 1.0 - rng.uniform(0.05, 0.14) * (x * x + y * y)
     gain = rng.uniform(0.9, 1.06)
     # A negative's curve: a soft toe, and a long shoulder where the sky lies.
-    density = (1.62 * np.clip(gain * tone / 255, 0.0, 1.3)) ** 1.6
-    tone = 14 + 228 * (1 - np.exp(-density))
+    density = (1.9 * np.clip(gain * tone / 255, 0.0, 1.3)) ** 1.8
+    tone = 12 + 226 * (1 - np.exp(-density))
+    # The developer sharpens edges, for it is used up beside dense places.
+    tone = tone + 0.45 * (tone - cv2.GaussianBlur(tone, (0, 0), 1.4 * unit))
     tone = age(rng, tone)
-    tone = tone + graininess(rng, (h, w), tone, strength=rng.uniform(2.2, 4.2))
+    tone = tone + graininess(
+        rng, (h, w), tone, strength=float(np.clip(rng.lognormal(0.55, 0.5), 0.7, 3.2))
+    )
     border = rng.uniform(8, 22) + 1.2 * rng.standard_normal((h, w), np.float32)
     tone = inside * tone + (1 - inside) * border
     return np.clip(np.round(tone), 0, 255).astype(np.uint8)
@@ -61,7 +65,8 @@ def graininess(
     noise = rng.standard_normal(shape, dtype=np.float32)
     clumped = cv2.GaussianBlur(noise, (0, 0), 0.8)
     clumped /= clumped.std()
-    return strength * clumped * (0.5 + 2.0 * (tone / 255) * (1 - tone / 255))
+    share = tone / 255
+    return strength * clumped * (0.3 + 2.8 * share * (1 - share))
 
 
 def age(rng: np.random.Generator, tone: Plane) -> Plane:
@@ -80,11 +85,11 @@ def age(rng: np.random.Generator, tone: Plane) -> Plane:
             ]
             shade = float(rng.choice([-1, 1]) * rng.uniform(8, 26))
             cv2.line(marks, fixed[0], fixed[1], shade, 1, cv2.LINE_AA, 4)
-    for _ in range(int(rng.poisson(14))):
+    for _ in range(int(rng.poisson(8))):
         at = (int(rng.integers(w)), int(rng.integers(h)))
         size = int(rng.choice([1, 1, 1, 2, 3]) * max(1, w // 560))
         cv2.circle(marks, at, size, float(rng.choice([-60, 45])), -1, cv2.LINE_AA)
-    if rng.random() < 0.15:
+    if rng.random() < 0.08:
         for _ in range(int(rng.integers(8, 40))):
             at = (int(rng.integers(w)), int(rng.integers(h // 2)))
             cv2.circle(marks, at, 4 * max(1, w // 560), 45.0, -1, cv2.LINE_AA)
@@ -92,7 +97,9 @@ def age(rng: np.random.Generator, tone: Plane) -> Plane:
     if rng.random() < 0.3:
         curl = np.cumsum(rng.normal(0, 1, (40, 2)), axis=0).cumsum(axis=0) * 0.25
         points = np.round(curl + rng.uniform([0, 0], [w, h])).astype(np.int32)
-        cv2.polylines(marks, [points], False, -70.0, 1, cv2.LINE_AA)
+        cv2.polylines(
+            marks, [points], isClosed=False, color=-70.0, lineType=cv2.LINE_AA
+        )
     return tone + cv2.GaussianBlur(marks, (0, 0), 0.5)
 
 
@@ -112,7 +119,8 @@ def fog(rng: np.random.Generator, shape: tuple[int, int]) -> Plane:
     h, w = shape
     small = grain.cloud(rng, (h // 16, w // 16), scale_px=w / 40)
     soft = cv2.resize(small, (w, h), interpolation=cv2.INTER_CUBIC)
-    slope = np.linspace(*rng.uniform(150, 245, 2), w, dtype=np.float32)[None, :]
+    left, right = rng.uniform(150, 245, 2)
+    slope = np.linspace(left, right, w, dtype=np.float32)[None, :]
     return np.clip(slope + 14 * soft, 0, 255)
 
 

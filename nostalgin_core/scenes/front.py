@@ -107,7 +107,7 @@ def paint(style: FrontStyle, *, px_per_m: float = 40.0) -> Gray:
     look = np.random.default_rng([style.seed, 0])
     rng = np.random.default_rng([style.seed, 1 + style.wing])
     board = draw(look, rng, style, px_per_m=px_per_m)
-    lit = light(board, style.sun, ambient=0.42 if style.sun[2] > 0.05 else 0.62)
+    lit = light(board, style.sun, ambient=0.36 if style.sun[2] > 0.05 else 0.47)
     worn = wall.weather(rng, lit, px_per_m=px_per_m)
     return np.round(255 * (0.05 + 0.95 * worn**0.62)).astype(np.uint8)
 
@@ -227,7 +227,7 @@ def dressing(
     bays: np.ndarray,
     stone: float,
 ) -> None:
-    """Add belts, quoins, fire escapes and a wall sign, as the kind of house has them."""
+    """Add belts, quoins, fire escapes and a wall sign, as suits the house."""
     if len(floors) and look.random() < 0.5:
         trim.belt(
             board, width_m=style.width_m, at_m=float(floors[0]) + 0.1, albedo=stone
@@ -237,6 +237,10 @@ def dressing(
             board, width_m=style.width_m, at_m=float(floors[-1]) + 0.1, albedo=stone
         )
     high = style.height_m - style.crown_m
+    if len(floors) > 1 and look.random() < 0.3:
+        trim.bands(board, style.width_m, floors=floors, albedo=stone)
+    if len(floors) > 1 and look.random() < 0.4:
+        trim.panels(look, board, bays=bays, floors=floors, albedo=stone)
     if style.kind in ("rowhouse", "hotel") and look.random() < 0.3:
         trim.quoins(
             board, width_m=style.width_m, low_m=style.base_m, high_m=high, albedo=stone

@@ -10,12 +10,18 @@ from nostalgin_core.scenes.surface import NOBODY, Canvas
 
 PAVEMENT_M = 4.0
 KERB_M = 0.18
-Plane = Float[np.ndarray, "h w"]
+Row = Float[np.ndarray, " n"]
+ROOF_M = 16.0  # how high the houses are that shade the ground
 Box = tuple[float, float, float, float]
 
 
 def lay(
-    rng: np.random.Generator, canvas: Canvas, camera: Camera, blocks: list[Box]
+    rng: np.random.Generator,
+    canvas: Canvas,
+    camera: Camera,
+    blocks: list[Box],
+    *,
+    sun: tuple[float, float, float],
 ) -> None:
     """Draw the ground wherever a ray meets it and no wall is nearer.
 
@@ -40,51 +46,95 @@ def lay(
         for box in blocks
         if max(box[0] - eye[0], eye[0] - box[2], box[1] - eye[1], eye[1] - box[3]) < 90
     ]
-    places = (np.float32(east), np.float32(north), np.float32(depth))
-    canvas.tone[mine] = surface(rng, *places, nearby)
+    places = tuple(row.astype(np.float32) for row in (east, north, depth))
+    tone = surface(rng, places[0], places[1], places[2], nearby)
+    canvas.tone[mine] = tone * shade(places[0], places[1], nearby, sun=sun)
     canvas.nearness[mine] = near[mine]
     canvas.label[mine] = NOBODY
 
 
+def shade(
+    east_m: Row, north_m: Row, blocks: list[Box], *, sun: tuple[float, float, float]
+) -> Row:
+    """Say how much light reaches the ground past the houses, all of one height.
+
+    The ray to the sun passes below the roofs for a while; where it is over a block
+    during that time, the ground lies in the block's shadow.
+    """
+    reach = ROOF_M / sun[2]
+    dark = np.zeros(east_m.shape, np.float32)
+    for share in (0.15, 0.4, 0.7, 1.0):
+        x, y = east_m + share * reach * sun[0], north_m + share * reach * sun[1]
+        for west, south, east, north in blocks:
+            inside = np.minimum(
+                np.minimum(x - west, east - x), np.minimum(y - south, north - y)
+            )
+            np.maximum(dark, inside, out=dark)
+    return 1.0 - 0.34 * np.clip(dark / 0.35, 0.0, 1.0)
+
+
 def surface(
     rng: np.random.Generator,
-    east_m: np.ndarray,
-    north_m: np.ndarray,
-    depth_m: np.ndarray,
+    east_m: Row,
+    north_m: Row,
+    depth_m: Row,
     blocks: list[Box],
-) -> np.ndarray:
+) -> Row:
     """Say how light the ground is at each place."""
     away = np.full(east_m.shape, np.inf, np.float32)
     for west, south, east, north in blocks:
         dx = np.maximum(west - east_m, east_m - east)
         dy = np.maximum(south - north_m, north_m - north)
-        away = np.minimum(away, np.maximum(dx, dy).astype(np.float32))
-    fine = np.clip(1.3 - depth_m / 18.0, 0.1, 1.0).astype(np.float32)
-    rough = tile(rng, east_m, north_m, step_m=0.02) * fine
-    patches = tile(rng, east_m, north_m, step_m=0.25)
-    tracks = tile(rng, 0.06 * east_m, north_m, step_m=0.1)
-    tracks += tile(rng, east_m, 0.06 * north_m, step_m=0.1)
-    road = float(rng.uniform(88, 128)) + 5 * patches + 4 * tracks + 4 * rough
-    stone = float(rng.uniform(140, 170)) + 5 * patches + 4 * rough
-    flag = float(rng.choice([1.2, 1.5, 1.8]))
-    for along in (east_m, north_m):
-        gap = np.abs((along / flag) % 1.0 - 0.5)
-        width = 0.012 + 0.0006 * depth_m
-        stone = stone - 34 * fine * (gap > 0.5 - width)
+        np.minimum(away, np.maximum(dx, dy), out=away)
+    fine = np.clip(1.3 - depth_m / 14.0, 0.0, 1.0).astype(np.float32)
+    rough = tile(rng, east_m, north_m, step_m=0.012) * fine
+    patches = tile(rng, east_m, north_m, step_m=0.45)
+    road = asphalt(rng, east_m, north_m) + 2.5 * patches + 2.5 * rough
+    stone = flags(rng, east_m, north_m, depth_m, fine) + 2.5 * patches + 2.5 * rough
     tone = np.where(away < PAVEMENT_M, stone, road)
     kerb = (away >= PAVEMENT_M) & (away < PAVEMENT_M + KERB_M)
-    tone = np.where(kerb, 162 + 4 * rough, tone)
+    tone = np.where(kerb, 190 + 4 * rough, tone)
     gutter = np.clip((away - PAVEMENT_M - KERB_M) / 0.8, 0, 1)
-    tone = np.where(away >= PAVEMENT_M + KERB_M, tone * (0.72 + 0.28 * gutter), tone)
-    covers = np.hypot((east_m % 17.0) - 8.5, (north_m % 13.0) - 6.5)
-    lid = (covers < 0.38) & (away > PAVEMENT_M + 1.0)
-    tone = np.where(lid, tone * (0.62 + 0.2 * ((covers * 14) % 1 > 0.5)), tone)
-    return tone.astype(np.float32)
+    tone = np.where(away >= PAVEMENT_M + KERB_M, tone * (0.7 + 0.3 * gutter), tone)
+    lid = np.hypot((east_m % 17.0) - 8.5, (north_m % 13.0) - 6.5)
+    iron = (lid < 0.4) & (away > PAVEMENT_M + 1.0)
+    ring = 0.55 + 0.3 * ((lid * 11) % 1 > 0.5)
+    return np.where(iron, tone * ring, tone).astype(np.float32)
 
 
-def tile(
-    rng: np.random.Generator, x_m: np.ndarray, y_m: np.ndarray, *, step_m: float
-) -> np.ndarray:
+def asphalt(rng: np.random.Generator, east_m: Row, north_m: Row) -> Row:
+    """Give the roadway's tone: worn lanes, mended patches, now and then a seam."""
+    tone = np.full(east_m.shape, rng.uniform(112, 168), np.float32)
+    wide, high = rng.uniform(2.0, 4.5, 2)
+    column = (east_m / np.float32(wide)).astype(np.int32) & 63
+    row = (north_m / np.float32(high)).astype(np.int32) & 63
+    mended = rng.normal(0, 9, (64, 64)).astype(np.float32)
+    mended[rng.random((64, 64)) > 0.16] = 0.0
+    tone += mended[row, column]
+    for _ in range(3):
+        slope, at = rng.normal(0, 1.2), rng.uniform(-30, 30)
+        bend = 0.25 * tile(rng, east_m, north_m * 0, step_m=0.9)
+        line = np.abs(((north_m - slope * east_m - at + bend) % 23.0) - 11.5)
+        tone -= 22 * np.clip(1 - line / 0.04, 0, 1)
+    return tone + 4 * tile(rng, 0.05 * east_m, 0.05 * north_m, step_m=0.06)
+
+
+def flags(
+    rng: np.random.Generator, east_m: Row, north_m: Row, depth_m: Row, fine: Row
+) -> Row:
+    """Give the pavement's tone: flagstones and their joints."""
+    size = float(rng.choice([1.2, 1.5, 1.8]))
+    tone = np.full(east_m.shape, rng.uniform(158, 196), np.float32)
+    each = rng.normal(0, 5, (64, 64)).astype(np.float32)
+    column = (east_m / np.float32(size)).astype(np.int32) & 63
+    tone += each[(north_m / np.float32(size)).astype(np.int32) & 63, column]
+    for along in (east_m, north_m):
+        gap = np.abs((along / np.float32(size)) % 1.0 - 0.5)
+        tone -= 38 * fine * (gap > 0.5 - 0.01 - 0.0006 * depth_m)
+    return tone
+
+
+def tile(rng: np.random.Generator, x_m: Row, y_m: Row, *, step_m: float) -> Row:
     """Look noise up in a tile that repeats every 512 steps."""
     size = 512
     sheet = rng.standard_normal((size, size), dtype=np.float32)
@@ -98,7 +148,7 @@ def tile(
 def sky(rng: np.random.Generator, canvas: Canvas) -> None:
     """Fill the rest with an overexposed sky, brighter towards the horizon."""
     h, w = canvas.tone.shape
-    top, low = rng.uniform(188, 214), rng.uniform(218, 238)
+    top, low = rng.uniform(196, 232), rng.uniform(226, 250)
     ramp = np.linspace(top, low, h, dtype=np.float32)[:, None]
     clouds = grain.cloud(rng, (h // 8, w // 8), scale_px=w / 24)
     soft = cv2.resize(clouds, (w, h), interpolation=cv2.INTER_LINEAR)

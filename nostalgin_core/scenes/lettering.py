@@ -88,10 +88,15 @@ def write(
 
 
 def lettered(
-    text: str, shape: tuple[int, int], *, font: int, scale: float
+    text: str,
+    shape: tuple[int, int],
+    *,
+    font: int,
+    scale: float,
+    bold_px: float = 2.2,
 ) -> np.ndarray:
     """Give the ink of one line of text, 0 to 1, centred on a sheet of this shape."""
-    bold = max(1, round(2.2 * scale))
+    bold = max(1, round(bold_px * scale))
     (long, tall), _ = cv2.getTextSize(text, font, scale, bold)
     at = (round((shape[1] - long) / 2), round((shape[0] + tall) / 2))
     sheet = np.zeros(shape, np.uint8)

@@ -1,6 +1,7 @@
 """The number board, lamp posts, trees, hydrants, hanging signs and awnings."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -65,7 +66,7 @@ def lamp_post(
         (bar((0.0, 1.0), (0.0, 4.0), 0.17), iron),
         (bar((0.0, 4.0), (0.0, 6.3), 0.12), iron),
     ]
-    parts += [(bar(p, q, 0.08), iron) for p, q in zip(bend[:-1], bend[1:], strict=True)]
+    parts += [(bar(p, q, 0.08), iron) for p, q in pairwise(bend)]
     parts.append((bar((side * 1.2, 6.3), (side * 1.2, 6.0), 0.1), iron))
     parts.append((oval(side * 1.2, 5.85, 0.2, 0.22), 225.0))
     return upright("other", camera, shape, feet_m, parts)
@@ -148,7 +149,7 @@ def number_board(
     wide, high = BOARD_M[0], BOARD_M[1] + ARROW_M
     origin = middle_m - u * wide / 2 - v * BOARD_M[1] / 2
     axes = np.stack([u * wide, v * high])
-    board = pasted("placard", camera, shape, origin, axes, (tone, alpha), blur_px=0.8)
+    board = pasted("placard", camera, shape, (origin, axes), (tone, alpha), blur_px=0.8)
     feet = (float(middle_m[0]), float(middle_m[1]))
     pole = upright(
         "other",
@@ -173,11 +174,10 @@ def board_picture(text: str, arrow: float) -> tuple[np.ndarray, np.ndarray]:
     tone[tip:] = 170.0
     tone[tip + 3 : -3, 3:-3] = 24.0
     face = tone[tip + 3 : -3, 3:-3]
-    ink = lettered(text, face.shape, font=cv2.FONT_HERSHEY_DUPLEX, scale=1.0)
     font = cv2.FONT_HERSHEY_DUPLEX
     (long, tall), _ = cv2.getTextSize(text, font, 1.0, 2)
     fit = min(0.62 * face.shape[0] / tall, 0.9 * face.shape[1] / long)
-    ink = lettered(text, face.shape, font=font, scale=fit)
+    ink = lettered(text, face.shape, font=font, scale=fit, bold_px=1.4)
     face[:] = face * (1 - ink) + 232 * ink
     x = wide / 2 * (1 + 0.6 * arrow)
     triangle = np.array([[x - 30, tip], [x + 30, tip], [x, 0]])
@@ -216,7 +216,7 @@ def hanging_sign(
         start, u = start + u, -u
     axes = np.stack([u, UP * high])
     sheet = (tone, np.ones_like(tone))
-    return pasted("other", camera, shape, start, axes, sheet, blur_px=0.5)
+    return pasted("other", camera, shape, (start, axes), sheet, blur_px=0.5)
 
 
 def awning(
@@ -225,6 +225,7 @@ def awning(
     shape: tuple[int, int],
     left_m: np.ndarray,
     right_m: np.ndarray,
+    *,
     out: np.ndarray,
 ) -> Sprite | None:
     """Let a striped or plain awning down over a shop window."""
@@ -242,4 +243,4 @@ def awning(
     alpha[-3:, scallop < 0.4] = 0.0
     foot = left_m + reach * out + (high - fall) * UP
     axes = np.stack([right_m - left_m, fall * UP - reach * out])
-    return pasted("other", camera, shape, foot, axes, (tone, alpha), blur_px=0.5)
+    return pasted("other", camera, shape, (foot, axes), (tone, alpha), blur_px=0.5)

@@ -60,7 +60,7 @@ def outline(
     """Draw a filled polygon, its points as rows of x and up."""
     h = board.albedo.shape[0]
     points = np.column_stack([points_m[:, 0], -points_m[:, 1]]) * board.px_per_m
-    pixels = np.round(points + [0.0, h]).astype(np.int32)
+    pixels = np.round(points + np.array([0.0, h])).astype(np.int32)
     cv2.fillPoly(board.albedo, [pixels], albedo)
     if relief_m is not None:
         cv2.fillPoly(board.relief_m, [pixels], relief_m)

@@ -1,5 +1,7 @@
 """The ground floor: shop windows under a sign, or a house door and its stoop."""
 
+from itertools import pairwise
+
 import cv2
 import numpy as np
 
@@ -22,7 +24,7 @@ def shopfronts(
         door(rng, board, (width_m - stairs - 0.05, 0.0, width_m - 0.3, 2.7))
     shared = rng.random() < 0.4
     tone = rng.uniform(0.12, 0.75)
-    for left, right in zip(edges[:-1], edges[1:], strict=True):
+    for left, right in pairwise(edges):
         tone = tone if shared else rng.uniform(0.1, 0.75)
         shop(rng, board, (left + pier / 2, 0.0, right - pier / 2, high_m), tone=tone)
     ledge = (0.0, high_m - 0.12, width_m, high_m + 0.14)
@@ -41,6 +43,9 @@ def shop(
     sign = high - rng.uniform(0.7, 1.1)
     trim = rng.uniform(0.1, 0.6)
     box(board, (left, low, right, sign), albedo=trim, relief_m=-0.05)
+    for up, shade in ((0.5, 1.25), (0.06, 0.6), (2.58, 1.3)):
+        ledge = (left, up, right, up + 0.05)
+        box(board, ledge, albedo=min(trim * shade, 1.0), relief_m=0.03)
     wide = 1.0
     door_left = rng.choice(
         [left + 0.15, (left + right - wide) / 2, right - wide - 0.15]
@@ -81,6 +86,11 @@ def display(
         card = (x, high - 0.6, min(x + 0.7, right), high - 0.2)
         box(board, card, albedo=0.6)
         write(board, card, legend(rng), albedo=0.1)
+    if rng.random() < 0.5 and right - left > 0.8:
+        gilt = (left + 0.1, high - 0.75, right - 0.1, high - 0.3)
+        write(board, gilt, legend(rng), albedo=0.8)
+    for x in np.arange(left + 1.3, right - 0.5, 1.3):
+        box(board, (x - 0.02, low, x + 0.02, high), albedo=0.45, relief_m=GLASS_M)
     glass = board.albedo[cut(board, *place)]
     if glass.size:
         ramp = np.linspace(0.14, 0.0, glass.shape[0], dtype=np.float32)

@@ -22,7 +22,7 @@ Patch = tuple[Float[np.ndarray, "_ 2"], float]  # polygon in photo pixels, tone 
 class Sprite:
     """One thing between the camera and the fronts."""
 
-    category: Category
+    category: Category | None  # None: a shadow, or what stands on a far roof
     depth_m: float
     corner_px: tuple[int, int]  # x, y of its upper left pixel
     tone: Float[np.ndarray, "h w"]
@@ -30,7 +30,7 @@ class Sprite:
 
 
 def cut_out(
-    category: Category,
+    category: Category | None,
     depth_m: float,
     patches: list[Patch],
     shape: tuple[int, int],
@@ -38,6 +38,7 @@ def cut_out(
     blur_px: float = 0.0,
     drift_px: float = 0.0,
     cloth: np.random.Generator | None = None,
+    opacity: float = 1.0,
 ) -> Sprite | None:
     """Paint patches into a sprite, clipped to the photo; None where nothing is left.
 
@@ -64,7 +65,7 @@ def cut_out(
             depth_m,
             (int(low[0]), int(low[1])),
             tone.astype(np.float32),
-            alpha.astype(np.float32) / 255,
+            alpha.astype(np.float32) * np.float32(opacity / 255),
         ),
         blur_px=blur_px,
         drift_px=drift_px,
@@ -107,13 +108,16 @@ def pasted(
     category: Category,
     camera: Camera,
     shape: tuple[int, int],
-    origin_m: np.ndarray,
-    axes_m: np.ndarray,
+    panel: tuple[np.ndarray, np.ndarray],
     sheet: tuple[np.ndarray, np.ndarray],
     *,
     blur_px: float = 0.0,
 ) -> Sprite | None:
-    """Paste a flat picture (tone, alpha) into the world; None where it is not seen."""
+    """Paste a flat picture (tone, alpha) into the world; None where it is not seen.
+
+    `panel` is its lower left corner, and its lower and left edge as two rows.
+    """
+    origin_m, axes_m = panel
     u, v = axes_m
     corners = origin_m + np.stack([0 * u, u, u + v, v])
     depths = lens.see(camera, corners)[:, 2]
@@ -127,7 +131,8 @@ def pasted(
     shrink = min(1.0, height_px / sheet[0].shape[0])
     size = [max(2, round(side * shrink)) for side in sheet[0].shape[::-1]]
     small = [
-        cv2.resize(np.float32(s), size, interpolation=cv2.INTER_AREA) for s in sheet
+        cv2.resize(s.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+        for s in sheet
     ]
     matrix = box_from_texture(photo_from_unit, box, (size[1], size[0]))
     out = (box[2] - box[0], box[3] - box[1])

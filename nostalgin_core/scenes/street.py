@@ -15,6 +15,7 @@ lots fill the short sides and street lots the long ones:
 """
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -220,16 +221,16 @@ def divide(
     down = shares(rng, int(rng.integers(1, 3)), low, high)[::-1]
     plots: list[tuple[tuple[float, float, float, float], tuple[int, ...]]] = []
     plots.append(((west, south, left, low), (3, 0)))
-    for x0, x1 in zip(bottom[:-1], bottom[1:], strict=True):
+    for x0, x1 in pairwise(bottom):
         plots.append(((float(x0), south, float(x1), yard[0]), (0,)))
     plots.append(((right, south, east, low), (0, 1)))
-    for y0, y1 in zip(up[:-1], up[1:], strict=True):
+    for y0, y1 in pairwise(up):
         plots.append(((right, float(y0), east, float(y1)), (1,)))
     plots.append(((right, high, east, north), (1, 2)))
-    for x1, x0 in zip(top[:-1], top[1:], strict=True):
+    for x1, x0 in pairwise(top):
         plots.append(((float(x0), yard[1], float(x1), north), (2,)))
     plots.append(((west, high, left, north), (2, 3)))
-    for y1, y0 in zip(down[:-1], down[1:], strict=True):
+    for y1, y0 in pairwise(down):
         plots.append(((west, float(y0), left, float(y1)), (3,)))
     return plots
 

@@ -95,7 +95,7 @@ def draw(
     x = np.arange(x0, x1, dtype=np.float64)[None, :]
     y = np.arange(y0, y1, dtype=np.float64)[:, None]
     a, b, near = (
-        np.float32(row[0] * x) + np.float32(row[1] * y + row[2])
+        (row[0] * x).astype(np.float32) + (row[1] * y + row[2]).astype(np.float32)
         for row in np.linalg.inv(photo_from_unit)
     )
     window = np.s_[y0:y1, x0:x1]

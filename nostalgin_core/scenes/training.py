@@ -16,6 +16,7 @@ from nostalgin_core.scenes.street import neighbourhood
 POOL = 96  # painted fronts that training photos share, for painting is the slow part
 STRETCH = 1.35  # how far a texture may be from its front's aspect
 COARSE_PX_PER_M = 30.0
+Thing = tuple[Category, Mask, bool]
 Wardrobe = Callable[[FrontStyle], Gray | None]
 
 
@@ -24,7 +25,7 @@ def sample(
     shape: tuple[int, int] = (840, 560),
     *,
     textures: list[Gray] | None = None,
-) -> tuple[Gray, list[tuple[Category, Mask, bool]]]:
+) -> tuple[Gray, list[Thing]]:
     """Paint one photo of one lot of a new street.
 
     Returns the photo and its things as (category, visible mask, target). Where real
@@ -35,12 +36,9 @@ def sample(
     lots = [lot for lot in hood.blocks[0].lots if not lot.ruined]
     lot = lots[int(rng.integers(len(lots)))]
     photo = photograph(hood, lot, rng, shape=shape, wear=wardrobe(textures or []))
-    things: list[tuple[Category, Mask, bool]] = [
-        ("facade", facade.visible, facade.target)
-        for facade in photo.truth.facades
-        if facade.visible.any()
-    ]
-    things += [(thing.category, thing.mask, False) for thing in photo.truth.occluders]
+    facades = [facade for facade in photo.truth.facades if facade.visible.any()]
+    things: list[Thing] = [("facade", each.visible, each.target) for each in facades]
+    things.extend((each.category, each.mask, False) for each in photo.truth.occluders)
     return photo.image, things
 
 

@@ -154,3 +154,46 @@ def wall_sign(
     face = (inset, low_m, width_m - inset, high_m)
     box(board, face, albedo=0.1 if dark else 0.75, relief_m=0.12)
     write(board, face, text, albedo=0.8 if dark else 0.1)
+
+
+def bands(board: Board, width_m: float, *, floors: np.ndarray, albedo: float) -> None:
+    """Stripe a front with flush courses of another stone, at sills and heads."""
+    for floor in floors:
+        for up, high in ((0.62, 0.2), (2.55, 0.24)):
+            where = cut(
+                board, 0.0, float(floor) + up, width_m, float(floor) + up + high
+            )
+            flush = np.abs(board.relief_m[where]) < 0.02
+            board.albedo[where][flush] = albedo
+            board.relief_m[where][flush] = 0.025
+
+
+def panels(
+    rng: np.random.Generator,
+    board: Board,
+    *,
+    bays: np.ndarray,
+    floors: np.ndarray,
+    albedo: float,
+) -> None:
+    """Set carved panels below the windows of one or two storeys."""
+    pitch = float(bays[1] - bays[0])
+    wide = 0.42 * pitch
+    for floor in rng.choice(floors[1:], size=min(2, len(floors) - 1), replace=False):
+        for x in bays:
+            low, high = float(floor) - 0.02, float(floor) + 0.5
+            frame = (x - wide / 2, low, x + wide / 2, high)
+            box(board, frame, albedo=albedo, relief_m=0.04)
+            inner = (x - wide / 2 + 0.07, low + 0.07, x + wide / 2 - 0.07, high - 0.07)
+            box(board, inner, albedo=albedo * 0.9, relief_m=0.0)
+            swag(board, x, (low + high) / 2, wide * 0.3, albedo)
+
+
+def swag(board: Board, x: float, up: float, reach: float, albedo: float) -> None:
+    """Carve a garland, or something that looks like one across the street."""
+    for turn in np.linspace(-1, 1, 9):
+        at = (x + reach * float(turn), up - 0.1 + 0.14 * float(turn) ** 2)
+        leaf = (at[0] - 0.05, at[1] - 0.04, at[0] + 0.05, at[1] + 0.05)
+        box(board, leaf, albedo=albedo, relief_m=0.07)
+    boss = (x - 0.06, up + 0.02, x + 0.06, up + 0.14)
+    box(board, boss, albedo=albedo * 1.05, relief_m=0.09)

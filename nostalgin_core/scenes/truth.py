@@ -47,7 +47,7 @@ class Truth:
     facades: tuple[TrueFacade, ...]
     occluders: tuple[TrueOccluder, ...]  # near ones first
     rest: Alpha  # share of each pixel's light from sky, ground, walls, film border
-    placard_text: str  # as on the board, e.g. "2001-7 M"; empty where there is none
+    placard_text: str  # as on the board, e.g. "2001 -7 M"; empty where there is none
     frame: Box
 
 

@@ -61,7 +61,7 @@ def spot(rng: np.random.Generator, fronts: list[Wall]) -> tuple[np.ndarray, floa
     if len(fronts) == 2:
         middle = ends[0, 1]
         away = sum(
-            out * (wide - rng.uniform(0.5, 5.0))
+            out * wide * rng.uniform(0.5, 1.0)
             for out, wide in zip(outs, wides, strict=True)
         )
         eye = middle + away + rng.normal(0.0, 2.0, 2)
@@ -101,6 +101,8 @@ def misfit(camera: Camera, fronts: list[Wall], shape: tuple[int, int]) -> float:
         cost += over[:, 0].max() + 1.2 * over[:, 1].max()
         across = pixels[2:, 0].max() - pixels[2:, 0].min()
         cost += max(0.0, 0.16 * shape[1] - across)
+        tall = pixels[:, 1].max() - pixels[:, 1].min()
+        cost += 0.25 * max(0.0, 0.5 * shape[0] - tall)
         cost += 6.0 * slant_excess(camera, wall, corner=len(fronts) == 2)
     return cost
 

@@ -49,7 +49,7 @@ def clad(
             rng, shape, size_px=(0.21 * scale, 0.075 * scale), joint_px=0.012 * scale
         )
         pale = 0.25 if albedo < 0.45 else -0.2
-        tone = 1.0 + 0.09 * tint + pale * joints + 0.03 * fine
+        tone = 1.0 + 0.075 * tint + 1.2 * pale * joints + 0.04 * fine
     elif material == "ashlar":
         tint, joints = cells(
             rng, shape, size_px=(1.1 * scale, 0.45 * scale), joint_px=0.02 * scale

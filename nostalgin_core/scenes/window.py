@@ -102,7 +102,6 @@ def dress(
     """Hang a blind, half drawn, or curtains behind the glass, or nothing."""
     if rng.random() > style.dressed:
         return
-    left, low, right, high = place
     glass = board.albedo[cut(board, *place)]
     if glass.size == 0:
         return

@@ -19,24 +19,28 @@ def test_the_same_style_paints_the_same_bytes(kind: front.Kind) -> None:
     )
 
 
-def test_two_seeds_paint_two_fronts() -> None:
-    one, other = (
-        front.paint(
-            front.FrontStyle(
-                seed, "tenement", 8.0, 5, 4.2, 1.2, "brick", 0.4, True, (0.0, 0.6, 0.8)
-            ),
-            px_per_m=20.0,
-        )
-        for seed in (1, 2)
+def house(seed: int, kind: front.Kind) -> front.FrontStyle:
+    return front.FrontStyle(
+        seed=seed,
+        kind=kind,
+        width_m=7.0,
+        storeys=4,
+        base_m=4.2,
+        crown_m=1.2,
+        material="brick",
+        albedo=0.5,
+        shops=True,
+        sun=(0.0, 0.6, 0.8),
     )
+
+
+def test_two_seeds_paint_two_fronts() -> None:
+    one, other = (front.paint(house(k, "tenement"), px_per_m=20.0) for k in (1, 2))
     assert (one != other).mean() > 0.5
 
 
 def test_windows_are_darker_than_the_wall_between_them() -> None:
-    style = front.FrontStyle(
-        5, "rowhouse", 7.0, 4, 4.2, 1.2, "brick", 0.5, True, (0.0, 0.6, 0.8)
-    )
-    texture = front.paint(style).astype(float)
+    texture = front.paint(house(5, "rowhouse")).astype(float)
     floor = texture[-round(40 * 6.5) : -round(40 * 5.4)]
     columns = floor.mean(axis=0)
     assert np.percentile(columns, 10) < 0.7 * np.percentile(columns, 90)

@@ -45,7 +45,7 @@ def wall_of(town: scenes.Neighbourhood, front_id: str) -> scenes.street.Wall:
 def test_every_target_front_is_in_its_photo(
     town: scenes.Neighbourhood, photo: scenes.PaintedPhoto
 ) -> None:
-    block, lot = photo.truth.placard_text.removesuffix(" M").split("-")
+    block, lot = photo.truth.placard_text.removesuffix(" M").split(" -")
     own = {
         front.front_id
         for each in town.blocks
@@ -196,3 +196,10 @@ def test_photos_come_in_any_shape(
     )
     assert photo.image.shape == shape
     assert any(facade.target for facade in photo.truth.facades)
+
+
+def test_the_album_follows_the_catalogue(town: scenes.Neighbourhood) -> None:
+    photos = scenes.album(town, seed=3, shape=(210, 140))
+    rows = scenes.catalogue_rows(town)
+    for row, photo in zip(rows[:3], photos, strict=False):
+        assert photo.name == row["File Name "]

@@ -3,9 +3,9 @@ import csv
 import numpy as np
 import pytest
 from shapely.geometry import Polygon
-from tests.data import DATA, needs_data
 
 from nostalgin_core import scenes
+from tests.data import DATA, needs_data
 
 SEEDS = (0, 1, 7)
 
