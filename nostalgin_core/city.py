@@ -22,7 +22,7 @@ from jaxtyping import Float
 from nostalgin_core.address import house_numbers
 from nostalgin_core.arrays import Points
 from nostalgin_core.block import FALLBACK_GAP_M, STREET_M, street_width
-from nostalgin_core.records import Block, Front
+from nostalgin_core.records import Front
 
 Vector = Float[np.ndarray, " 2"]
 
@@ -62,15 +62,15 @@ class Plot:
     borders: tuple[Border, ...]
 
 
-def plot(block: Block, fronts: Sequence[Front]) -> Plot:
-    """Name the sides of a block's outlines by the streets of its fronts."""
+def plot(name: str, outlines_m: Sequence[Points], fronts: Sequence[Front]) -> Plot:
+    """Name the sides of a block's outlines, one a ring, by its fronts' streets."""
     rings = sorted({front.ring for front in fronts})
     borders = [
         border
-        for outline_m, ring in zip(block.outline_m, rings, strict=True)
+        for outline_m, ring in zip(outlines_m, rings, strict=True)
         for border in _borders(outline_m, [one for one in fronts if one.ring == ring])
     ]
-    return Plot(block.block, block.outline_m, tuple(borders))
+    return Plot(name, tuple(outlines_m), tuple(borders))
 
 
 def places(plots: Sequence[Plot]) -> dict[str, Move]:

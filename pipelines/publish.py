@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
+from nostalgin_core import city
 from pipelines import runs, site
 from pipelines.manifest import Row, natural
 from pipelines.store import Store
@@ -13,7 +16,6 @@ from pipelines.versions import Versions
 
 CURRENT: Final = "CURRENT"
 SITE: Final = "site"
-STREET_M: Final = 24.0  # between blocks of which nothing tells where they lie
 
 
 def publish(store: Store, run: str, versions: Versions, rows: Sequence[Row]) -> None:
@@ -40,12 +42,13 @@ def models(
     """Gather the blocks' models, in the order of their numbers."""
     why = reasons(runs.read_table(store, run, "rejections"), rows)
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
-    made, east_m = [], 0.0
-    for row in ordered:
-        record = json.loads(row["record"])
+    records = [json.loads(row["record"]) for row in ordered]
+    moves = places(records, rows)
+    made = []
+    for row, record in zip(ordered, records, strict=True):
+        move = moves[row["block"]]
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
-        (west, south, _), (east, _, _) = row["low_m"], row["high_m"]
         made.append(
             site.BlockModel(
                 name=row["block"],
@@ -53,11 +56,29 @@ def models(
                 record=record,
                 low_m=tuple(row["low_m"]),
                 high_m=tuple(row["high_m"]),
-                origin_m=(east_m - west, -south),
+                origin_m=(move.east_m, move.north_m),
+                turn_rad=move.turn_rad,
             )
         )
-        east_m += east - west + STREET_M
     return made
+
+
+def places(records: list[dict[str, Any]], rows: Sequence[Row]) -> dict[str, city.Move]:
+    """Place the blocks by the streets that their fronts share."""
+    fronts: dict[str, dict[str, Any]] = defaultdict(dict)
+    for row in rows:
+        if row.front is not None:
+            fronts[row.front.block].setdefault(row.front.front_id, row.front)
+    return city.places(
+        [
+            city.plot(
+                record["block"],
+                [np.array(outline) for outline in record["outline_m"]],
+                list(fronts[record["block"]].values()),
+            )
+            for record in records
+        ]
+    )
 
 
 def reasons(

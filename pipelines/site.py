@@ -57,6 +57,7 @@ class BlockModel:
     high_m: tuple[float, float, float]
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
     place: tileset.Place | None = None  # in place of origin_m, where it is known
+    turn_rad: float = 0.0  # of its frame in the city's, anticlockwise
 
 
 def assemble(
@@ -91,7 +92,7 @@ def assemble(
     }
     files = {key: f"photos/{safe(key)}{suffix(data)}" for key, data in photos.items()}
     tiles = [
-        tileset.Tile(uri, one.low_m, one.high_m, one.origin_m, one.place)
+        tileset.Tile(uri, one.low_m, one.high_m, one.origin_m, one.place, one.turn_rad)
         for uri, one in models.items()
     ]
     record = {

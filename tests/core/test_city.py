@@ -40,7 +40,8 @@ def plot(name: str, avenue: int, width_m: float = 80.0) -> Plot:
         front(name, 2, 130, width_m),
         front(name, 3, avenue + 1, 50.0),
     ]
-    return city.plot(block.block(name, fronts, [], {}), fronts)
+    outlines = block.block(name, fronts, [], {}).outline_m
+    return city.plot(name, outlines, fronts)
 
 
 def grounds(plots: list[Plot], moves: dict[str, Move]) -> list[shapely.Polygon]:
