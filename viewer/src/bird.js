@@ -1,9 +1,10 @@
 // The bird's view: an orbit round a point on the ground.
 
-import { MathUtils, Vector3 } from 'three';
+import { Box3, MathUtils, Vector3 } from 'three';
 
 const LOOK_RAD_PX = 0.005;
 const PAN_PER_S = 0.7; // of the distance
+const MARGIN = 0.84; // of the view's half, for what lies round its edge
 const ZOOM = 1.12; // a notch of the wheel
 
 export class Bird {
@@ -15,22 +16,43 @@ export class Bird {
     this.far = 1000;
   }
 
-  /** Frames a box, seen from the azimuth given. */
-  frame(box, camera, azimuth = this.azimuth) {
-    box.getCenter(this.target);
-    this.target.y = 0;
+  /** Frames points on and above the ground, seen from the azimuth given. */
+  frame(points, camera, azimuth = this.azimuth) {
+    this.target.setY(0);
     this.azimuth = azimuth;
-    this.elevation = 0.72;
+    this.elevation = 0.66;
+    const box = new Box3().setFromPoints(points);
+    box.getCenter(this.target).setY(0);
     const eye = camera.clone();
-    let [near, far] = [20, 5000];
-    for (let i = 0; i < 24; i++) {
+    const up = Math.tan(MathUtils.degToRad(camera.fov / 2));
+    for (let turn = 0; turn < 4; turn++) {
+      this.#approach(points, eye);
+      const { min, max } = seen(points, eye);
+      const [x, y] = [(min.x + max.x) / 2, (min.y + max.y) / 2];
+      this.#shift(x * up * camera.aspect * this.distance, (y * up * this.distance) / Math.sin(this.elevation));
+    }
+    this.#approach(points, eye);
+    this.far = this.distance * 3;
+  }
+
+  /** Goes as near as all points allow. */
+  #approach(points, eye) {
+    let [near, far] = [20, 20000];
+    for (let i = 0; i < 26; i++) {
       this.distance = (near + far) / 2;
       this.aim(eye);
       eye.updateMatrixWorld();
-      if (holds(eye, box)) far = this.distance;
+      const { min, max } = seen(points, eye);
+      const most = Math.max(-min.x, -min.y, max.x, max.y);
+      if (most < MARGIN) far = this.distance;
       else near = this.distance;
     }
-    this.far = this.distance * 3;
+  }
+
+  #shift(right, forward) {
+    const [s, c] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
+    this.target.x += right * c - forward * s;
+    this.target.z += -right * s - forward * c;
   }
 
   step(dt, input) {
@@ -40,9 +62,7 @@ export class Bird {
     this.distance = MathUtils.clamp(this.distance * ZOOM ** zoom, 15, this.far);
     const [right, forward] = input.move;
     const pace = PAN_PER_S * this.distance * dt * (input.hurried ? 2.5 : 1);
-    const [s, c] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
-    this.target.x += (right * c - forward * s) * pace;
-    this.target.z += (-right * s - forward * c) * pace;
+    this.#shift(right * pace, forward * pace);
   }
 
   aim(camera) {
@@ -56,15 +76,14 @@ export class Bird {
   }
 }
 
-/** Whether all corners of a box lie well inside the view. */
-function holds(camera, { min, max }) {
-  const corner = new Vector3();
-  for (let i = 0; i < 8; i++) {
-    corner.set(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
-    corner.applyMatrix4(camera.matrixWorldInverse);
-    if (corner.z > -1) return false;
-    corner.applyMatrix4(camera.projectionMatrix);
-    if (Math.max(Math.abs(corner.x), Math.abs(corner.y)) > 0.86) return false;
+/** The part of the view that points take up, from -1 to 1; endless if one lies behind. */
+function seen(points, camera) {
+  const box = new Box3();
+  const at = new Vector3();
+  for (const point of points) {
+    at.copy(point).applyMatrix4(camera.matrixWorldInverse);
+    if (at.z > -1) return new Box3(at.set(-Infinity, -Infinity, 0), new Vector3(Infinity, Infinity, 0));
+    box.expandByPoint(at.applyMatrix4(camera.projectionMatrix));
   }
-  return true;
+  return box;
 }

@@ -68,6 +68,9 @@ export function shade(walls) {
     transparent: true,
     depthWrite: false,
     side: DoubleSide,
+    polygonOffset: true,
+    polygonOffsetFactor: -2,
+    polygonOffsetUnits: -8,
   });
   return new Mesh(geometry, material);
 }
@@ -191,7 +194,7 @@ void main() {
   #include <colorspace_fragment>
   #ifdef USE_FOG
   // level ground is seen at so flat an angle that haze has to come sooner
-  float haze = 1.0 - exp(-fogDensity * fogDensity * vFogDepth * vFogDepth * 5.0);
+  float haze = 1.0 - exp(-fogDensity * fogDensity * vFogDepth * vFogDepth * 7.0);
   gl_FragColor.rgb = mix(gl_FragColor.rgb, fogColor, haze);
   #endif
 }

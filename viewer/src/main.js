@@ -13,14 +13,15 @@ import { Panel } from './panel.js';
 import { fromHash, toHash } from './pose.js';
 import { Stage } from './stage.js';
 import { frontOf } from './survey.js';
-import { Walker, along, before } from './walker.js';
+import { Walker, along, before, rows } from './walker.js';
 import { contains } from './outline.js';
 import { nameOf } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 const FLIGHT_S = 1.1;
+const FARTHEST_M = 28; // to step back from a front
 const LONGEST_STEP_S = 0.1;
-const SETTLING_FRAMES = 20; // textures reach the screen a little later
+const SETTLING_FRAMES = 3; // after a change, so that a sharp picture stays
 
 class Page {
   constructor(city) {
@@ -97,12 +98,10 @@ class Page {
 
   homeIn(block) {
     const known = block.buildings.map(({ id }) => this.city.buildings.get(String(id)));
-    const standing = known.filter(({ shape }) => shape?.walls.length);
-    const fronts = standing.filter(({ record }) => !record.assumed);
-    const { shape } = fronts[0] ?? standing[0] ?? {};
-    if (!shape) return this.walker.pose;
-    const wall = this.frontOf(shape);
-    return along(wall, standing.flatMap((one) => one.shape.walls), this.room(wall));
+    const walls = known.flatMap(({ shape }) => shape?.walls ?? []).filter((wall) => this.clear(wall));
+    const [best] = rows(walls.filter(({ kind }) => kind === 'own'));
+    const row = best ?? rows(walls)[0];
+    return row ? along(row, this.room(row[0])) : this.walker.pose;
   }
 
   poseBefore(shape) {
@@ -120,7 +119,7 @@ class Page {
     const foot = new Vector3((a[0] + b[0]) / 2, 1.5, (a[1] + b[1]) / 2).addScaledVector(out, 0.3);
     this.ray.set(foot, out);
     const hit = this.ray.intersectObjects([...this.city.walls], false)[0];
-    return hit ? Math.max(2.5, Math.min(16, hit.distance * 0.6)) : 16;
+    return hit ? Math.max(2.5, Math.min(FARTHEST_M, hit.distance * 0.7)) : FARTHEST_M;
   }
 
   /** Whether the ground before a wall is free. */
@@ -137,7 +136,10 @@ class Page {
     this.lastTime = time;
     if (this.held) return;
     this.step(dt);
-    if (this.changed()) this.draw();
+    this.city.update(this.walker.feet);
+    if (!this.changed()) return;
+    this.stage.pace(this.still === 0 ? dt : 0);
+    this.draw();
   }
 
   step(dt) {
@@ -184,7 +186,6 @@ class Page {
   }
 
   draw() {
-    this.city.update(this.walker.feet);
     this.stage.draw(1 - 0.72 * this.height);
     this.minimap.draw(this.walker.pose, this.city, this.stage.raised, this.chosen, shown.evidence.value);
     const progress = Math.round(this.city.tiles.loadProgress * 100);
@@ -265,12 +266,41 @@ class Page {
 
   setBird(on, now = false) {
     if (on && !this.flying) {
-      this.bird.frame(this.stage.box, this.stage.camera, Math.round(this.walker.yaw * 2 / Math.PI) * Math.PI / 2 + 0.35);
+      this.bird.frame(this.corners(), this.stage.camera, this.bestAzimuth());
     }
     this.flying = on;
     if (now) this.height = on ? 1 : 0;
     document.body.classList.toggle('bird', on);
     press('KeyB', on);
+  }
+
+  /** The side from which most photographs are seen; of equals, the one ahead. */
+  bestAzimuth() {
+    const sides = Array.from({ length: 24 }, (_, i) => (i * Math.PI) / 12);
+    const worth = sides.map((azimuth) => {
+      const towards = [Math.sin(azimuth), Math.cos(azimuth)];
+      let sum = 0;
+      for (const { shape } of this.city.buildings.values()) {
+        for (const { a, b, out, kind } of shape?.walls ?? []) {
+          const facing = Math.max(0, out[0] * towards[0] + out[1] * towards[1]);
+          if (kind === 'own') sum += facing * Math.min(20, Math.hypot(b[0] - a[0], b[1] - a[1]));
+        }
+      }
+      return sum * (1 + 0.15 * Math.cos(azimuth - this.walker.yaw));
+    });
+    return sides[worth.indexOf(Math.max(...worth))];
+  }
+
+  /** Points that the bird's view has to hold. */
+  corners() {
+    const { min, max } = this.stage.box;
+    const points = [];
+    for (const { shape } of this.city.buildings.values()) {
+      for (const { a, top, bottom } of shape?.walls ?? []) {
+        points.push(new Vector3(a[0], bottom, a[1]), new Vector3(a[0], top, a[1]));
+      }
+    }
+    return points.length ? points : [min.clone(), max.clone()];
   }
 
   key(code) {
@@ -351,7 +381,12 @@ starting.catch(complain);
 
 window.nostalgin = {
   ready: starting.then(() => true),
-  step: async (dt) => { const page = await starting; page.step(dt); page.draw(); },
+  step: async (dt) => {
+    const page = await starting;
+    page.step(dt);
+    page.city.update(page.walker.feet);
+    page.draw();
+  },
   hold: async (on = true) => { (await starting).held = on; },
   get pose() { return window.nostalgin.page.walker.pose; },
   setPose: (pose) => { window.nostalgin.page.walker.pose = pose; window.nostalgin.page.aim(); },

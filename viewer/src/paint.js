@@ -116,12 +116,13 @@ if (code == 0 || code == 6) {
   float line = abs(fract(along / 0.9) - 0.5) * 0.9;
   hatch = (1.0 - smoothstep(0.02, 0.02 + wide * 1.3, line)) * (1.0 - smoothstep(0.12, 0.45, wide));
   hatch *= cityAssumed;
-  float light = 0.70 + 0.34 * max(dot(n, sun), 0.0);
+  float light = 0.66 + 0.44 * max(dot(n, sun), 0.0);
   light *= roof ? 1.0 : mix(0.86, 1.0, smoothstep(0.0, 9.0, cityPosition.y));
-  vec3 plaster = roof ? vec3(0.20, 0.196, 0.188) : mix(vec3(0.245, 0.24, 0.23), vec3(0.43, 0.42, 0.40), cityAssumed);
+  vec3 plaster = roof ? vec3(0.30, 0.295, 0.28) : mix(vec3(0.245, 0.24, 0.23), vec3(0.43, 0.42, 0.40), cityAssumed);
   diffuseColor.rgb = plaster * light * (1.0 - 0.16 * hatch);
   strength = (roof ? 0.34 : 0.5) + 0.3 * cityAssumed;
 }
+diffuseColor.rgb *= vec3(1.0, 0.985, 0.955); // the paper's tone
 vec4 tint = palette[code];
 float gray = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
 vec3 tinted = tint.rgb * tint.rgb * (0.25 + 0.95 * sqrt(gray)) * (1.0 - 0.3 * hatch);

@@ -68,7 +68,7 @@ function photographs(record, name) {
 }
 
 function figure({ file, credit, caption, used }, name) {
-  const image = make('img', { alt: `Photograph of ${name}`, loading: 'lazy', decoding: 'async' });
+  const image = make('img', { alt: `Photograph of ${name}`, decoding: 'async' });
   const link = make('a', { target: '_blank', rel: 'noopener', title: 'Open the photograph' }, [image]);
   const holder = make('figure', {}, [link]);
   const absent = () => link.replaceWith(make('p', { className: 'none', textContent: MISSING }));

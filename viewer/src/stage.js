@@ -13,12 +13,15 @@ Mesh.prototype.raycast = acceleratedRaycast;
 
 const HAZE = 0.0042; // per metre, on the street
 const INK = 0x26241f;
+const SLOW_S = 0.045;
+const PATIENCE = 6; // slow frames
+const COARSE = 0.55; // of the screen's own resolution
 
 export class Stage {
   constructor(canvas) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.camera = new PerspectiveCamera(62, 1, 0.08, 4000);
+    this.camera = new PerspectiveCamera(62, 1, 0.12, 4000);
     this.scene = new Scene();
     this.scene.fog = new FogExp2(HORIZON, HAZE);
     this.dome = sky();
@@ -27,6 +30,8 @@ export class Stage {
     this.raised = [];
     this.paved = new Set();
     this.chosen = null;
+    this.lag = 0;
+    this.sharpness = 1;
   }
 
   fit(width, height) {
@@ -34,6 +39,19 @@ export class Stage {
     this.camera.aspect = width / height;
     this.camera.fov = width < height ? 78 : 62;
     this.camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Draws coarser while frames that follow each other take long, and sharply at rest.
+   * `dt` is the time since the last frame, or 0 at rest.
+   */
+  pace(dt) {
+    const slow = dt > SLOW_S;
+    this.lag = Math.max(0, Math.min(2 * PATIENCE, this.lag + (slow ? 1 : -1)));
+    const wanted = dt > 0 && this.lag > PATIENCE ? COARSE : 1;
+    if (wanted === this.sharpness) return;
+    this.sharpness = wanted;
+    this.renderer.setPixelRatio(wanted * Math.min(devicePixelRatio, 2));
   }
 
   draw(haze = 1) {

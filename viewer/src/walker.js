@@ -11,6 +11,9 @@ const RUN_M_S = 8;
 const TURN_RAD_S = 1.7;
 const LOOK_RAD_PX = 0.0032;
 const STEEPEST = MathUtils.degToRad(85);
+const HIGHEST_DEG = 20; // so that the street stays in view
+const SAME_LINE_M = 3;
+const WIDE_M = 12;
 const REACH_M = 220; // no walking further than this from the nearest block
 
 export class Walker {
@@ -73,40 +76,55 @@ export class Walker {
   }
 }
 
-/** Where to stand to see a wall whole: on its street, facing it, within `room` metres. */
-export function before(wall, room = 16) {
+/** Where to stand to see a wall: on its street, facing it, within `room` metres. */
+export function before(wall, room) {
   const { a, b, out, top } = wall;
   const width = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const distance = Math.min(room, Math.max(7, 0.9 * width, 0.95 * top));
-  const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+  const distance = Math.min(room, Math.max(8, 0.85 * width, 0.8 * top));
   const rise = Math.atan2(Math.max(0, 0.42 * top - EYE_M), distance);
   return {
-    x: middle[0] + out[0] * distance,
+    x: (a[0] + b[0]) / 2 + out[0] * distance,
     y: EYE_M,
-    z: middle[1] + out[1] * distance,
+    z: (a[1] + b[1]) / 2 + out[1] * distance,
     yaw: MathUtils.radToDeg(Math.atan2(out[0], out[1])),
-    pitch: MathUtils.radToDeg(rise),
+    pitch: Math.min(HIGHEST_DEG, MathUtils.radToDeg(rise)),
   };
 }
 
-/** Where a walk begins: off the kerb, looking along a row of fronts that share a street. */
-export function along(wall, walls, room = 16) {
-  const { out } = wall;
+/** Walls that stand side by side along one street, the row that shows most first. */
+export function rows(walls) {
+  const found = [];
+  for (const wall of walls) {
+    const near = found.find(([first]) => dot(first.out, wall.out) > 0.98
+      && Math.abs(dot(first.a, first.out) - dot(wall.a, first.out)) < SAME_LINE_M);
+    if (near) near.push(wall);
+    else found.push([wall]);
+  }
+  // many fronts make a street, not one wide one
+  const shown = (row) => row.reduce(
+    (sum, { a, b }) => sum + Math.min(WIDE_M, Math.hypot(b[0] - a[0], b[1] - a[1])), 0,
+  );
+  return found.sort((p, q) => shown(q) - shown(p));
+}
+
+/** Where a walk begins: off the kerb, looking along a row of fronts. */
+export function along(row, room) {
+  const [{ a, out }] = row;
   const right = [out[1], -out[0]];
-  const at = (point, way) => point[0] * way[0] + point[1] * way[1];
-  const depth = at(wall.a, out);
-  const row = walls.filter((one) => at(one.out, out) > 0.98 && Math.abs(at(one.a, out) - depth) < 3);
-  const start = Math.min(...row.map((one) => at(one.a, right)));
-  const end = Math.max(...row.map((one) => at(one.b, right)));
-  const back = Math.min(room, 11);
-  const s = start + Math.min(4, 0.1 * (end - start));
-  const turn = MathUtils.degToRad(38); // away from the street's own direction
-  const look = [0, 1].map((i) => right[i] * Math.cos(turn) - out[i] * Math.sin(turn));
+  const start = Math.min(...row.map((one) => dot(one.a, right)));
+  const end = Math.max(...row.map((one) => dot(one.b, right)));
+  const back = Math.min(room, 13);
+  const s = start - Math.min(6, 0.1 * (end - start));
+  const reach = Math.min(end - s, 45); // look at a point of the row this far on
+  const look = [0, 1].map((i) => right[i] * 0.62 * reach - out[i] * back);
+  const depth = dot(a, out);
   return {
     x: right[0] * s + out[0] * (depth + back),
     y: EYE_M,
     z: right[1] * s + out[1] * (depth + back),
     yaw: MathUtils.radToDeg(Math.atan2(-look[0], -look[1])),
-    pitch: 9,
+    pitch: 10,
   };
 }
+
+const dot = (p, q) => p[0] * q[0] + p[1] * q[1];
