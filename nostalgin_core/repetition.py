@@ -13,13 +13,16 @@ from collections.abc import Iterator
 
 import cv2
 import numpy as np
-from jaxtyping import Float, Shaped
+from jaxtyping import Bool, Float, Shaped
 from scipy import fft, ndimage
 
 from nostalgin_core.arrays import Mask
-from nostalgin_core.smooth import Values, fill
+from nostalgin_core.records import Box
+from nostalgin_core.slices import grown
+from nostalgin_core.smooth import Half, Values, fill
 
 Offsets = Shaped[np.ndarray, "n 2"]  # x, y
+HalfMask = Bool[np.ndarray, "h2 w2"]
 Rates = Float[np.ndarray, " n"]  # correlations
 Spread = Float[np.ndarray, "rows columns"]  # one entry an offset
 
@@ -31,6 +34,7 @@ DOUBT = 0.02  # share of a neighbourhood that must be known to outweigh the whol
 SHADED = 0.5  # how far the membrane is believed about shade, where nothing else tells
 FAVOUR = 10.0  # a correlation higher by 0.1 weighs nearly three times as much
 RIM_PX = 4  # width of the fade at the rim of what can be copied
+BAND_PX = 64  # of what is known round the hole, to compare copies with
 NOISE = 2.0  # gray levels: what varies less agrees by chance
 
 
@@ -100,20 +104,21 @@ def offsets(
 def _vertex(before: Rates, at: Rates, after: Rates) -> Rates:
     """Find the top of the parabola through three neighbours, from the middle one."""
     bend = 2 * at - before - after
-    return (after - before) / (2 * np.maximum(bend, 1e-6)).clip(1e-6)
+    return ((after - before) / (2 * np.maximum(bend, 1e-6))).clip(-0.5, 0.5)
 
 
-def shifted(a: np.ndarray, o: np.ndarray) -> np.ndarray:
-    """Look up `a` at p + o for every p; zero where that leaves it."""
-    x, y = int(o[0]), int(o[1])
+def shifted(a: np.ndarray, o: np.ndarray, within: Box | None = None) -> np.ndarray:
+    """Look up `a` at p + o for every p of a box; zero where that leaves it."""
     h, w = a.shape
-    out = np.zeros_like(a)
-    rows = slice(max(0, -y), min(h, h - y))
-    columns = slice(max(0, -x), min(w, w - x))
-    if rows.start < rows.stop and columns.start < columns.stop:
-        out[rows, columns] = a[
-            rows.start + y : rows.stop + y, columns.start + x : columns.stop + x
-        ]
+    x0, y0, x1, y1 = within or (0, 0, w, h)
+    x, y = int(o[0]), int(o[1])
+    out = np.zeros((y1 - y0, x1 - x0), a.dtype)
+    top, bottom = max(0, y0 + y), min(h, y1 + y)
+    left, right = max(0, x0 + x), min(w, x1 + x)
+    if top < bottom and left < right:
+        rows = slice(top - y0 - y, bottom - y0 - y)
+        columns = slice(left - x0 - x, right - x0 - x)
+        out[rows, columns] = a[top:bottom, left:right]
     return out
 
 
@@ -154,11 +159,23 @@ def _inward(there: Mask) -> Values:
     """Rise from 0 at the rim of what can be copied to 1 inside, to hide the rim."""
     size = (2 * RIM_PX + 1,) * 2
     near = cv2.blur(there.astype(np.float32), size, borderType=cv2.BORDER_REPLICATE)
-    return np.where(there, 2 * near - 1, 0).clip(0, 1).astype(np.float32)
+    return np.where(there, 2 * near - 1, 0).clip(0, 1)
 
 
-def copy(values: Values, known: Mask) -> tuple[Values, Values]:
-    """Copy into every texel from where the front repeats.
+def _smaller(values: Values, known: Mask) -> tuple[Half, HalfMask]:
+    """Shrink a large front to the size at which it is judged."""
+    h, w = values.shape
+    shrink = (JUDGED_PX / (h * w)) ** 0.5
+    if shrink >= 1:
+        return values, known
+    size = (max(1, round(w * shrink)), max(1, round(h * shrink)))
+    part = cv2.resize(known.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+    mean = cv2.resize(values * known, size, interpolation=cv2.INTER_AREA)
+    return mean / np.maximum(part, 1e-6), part > 0.5
+
+
+def copy(values: Values, known: Mask, within: Box) -> tuple[Half, Half]:
+    """Copy into every texel of a box from where the front repeats.
 
     The copies are averaged with weights that favour the offsets that agree best.
     Offsets are found and judged at a small size and used at the full one.
@@ -166,24 +183,30 @@ def copy(values: Values, known: Mask) -> tuple[Values, Values]:
     Returns the copy and its trust, 0 to 1: the agreement reached; 0 where no copy is.
     """
     h, w = values.shape
-    shrink = min(1.0, (JUDGED_PX / (h * w)) ** 0.5)
-    small, seen = values, known
-    if shrink < 1:
-        size = (max(1, round(w * shrink)), max(1, round(h * shrink)))
-        part = cv2.resize(known.astype(np.float32), size, interpolation=cv2.INTER_AREA)
-        mean = cv2.resize(values * known, size, interpolation=cv2.INTER_AREA)
-        small, seen = mean / np.maximum(part, 1e-6), part > 0.5
+    small, seen = _smaller(values, known)
     choices, rates = offsets(small, seen)
-    scale = [w / small.shape[1], h / small.shape[0]]
+    scale = np.array([w / small.shape[1], h / small.shape[0]])
     full = np.round(choices * scale).astype(int)
-    total, weights, trust = np.zeros((3, h, w), np.float32)
+    # Where the box's texel centres lie in the small front.
+    columns = (np.arange(within.x0, within.x1, dtype=np.float32) + 0.5) / scale[0] - 0.5
+    rows = (np.arange(within.y0, within.y1, dtype=np.float32) + 0.5) / scale[1] - 0.5
+    at = [a.astype(np.float32) for a in np.meshgrid(columns, rows)]
+    total, weights, trust = np.zeros((3, len(rows), len(columns)), np.float32)
     judged = agreements(small, seen, np.round(choices).astype(int), rates)
-    for o, maps in zip(full, judged, strict=True):
-        r, shade = maps if shrink == 1 else (cv2.resize(a, (w, h)) for a in maps)
-        weight = np.expm1(FAVOUR * r) * _inward(shifted(known, o))
-        total += weight * (shifted(values, o) + shade)
+    for o, (r, shade) in zip(full, judged, strict=True):
+        weight, agreed, lacking = (
+            cv2.remap(
+                np.asarray(a, np.float32),
+                *at,
+                cv2.INTER_LINEAR,
+                borderMode=cv2.BORDER_REPLICATE,
+            )
+            for a in (np.expm1(FAVOUR * r) * _inward(r > 0), r, shade)
+        )
+        weight *= shifted(known, o, within)
+        total += weight * (shifted(values, o, within) + lacking)
         weights += weight
-        trust = np.maximum(trust, np.where(weight > 0, r, 0))
+        np.maximum(trust, agreed, out=trust, where=weight > 0)
     return total / np.maximum(weights, 1e-6), trust
 
 
@@ -193,11 +216,16 @@ def guess(values: Values, hole: Mask) -> Values:
     What the copies miss of the known texels, mostly shade, is carried into the hole by
     a membrane of its own.
     """
-    smooth = fill(values, hole)
-    copied, trust = copy(np.where(hole, 0, values).astype(np.float32), ~hole)
+    made = fill(values, hole)
+    if not hole.any():
+        return made
+    rows, columns = hole.any(1).nonzero()[0], hole.any(0).nonzero()[0]
+    tight = Box(columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)
+    box = grown(tight, BAND_PX, hole.shape)
+    copied, trust = copy(np.where(hole, 0, values).astype(np.float32), ~hole, box)
+    window = np.s_[box.y0 : box.y1, box.x0 : box.x1]
     usable = trust > 0
-    if not usable.any():
-        return smooth
-    missed = fill(values - copied, hole | ~usable)
-    made = smooth + trust * (copied + missed - smooth)
-    return np.where(hole, np.where(usable, made, smooth), values).astype(np.float32)
+    missed = fill(values[window] - copied, hole[window] | ~usable)
+    better = made[window] + trust * (copied + missed - made[window])
+    np.copyto(made[window], better, where=hole[window] & usable)
+    return made
