@@ -19,6 +19,8 @@ LEAST_INSIDE = 0.5  # of a line
 HIDDEN = 0.5  # alpha up to which something else is what the camera saw
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
 LEAST_LINES = 3.0  # whose weights support a front's horizontal
+BORROWED = 0.85  # of its own votes are enough for a direction that the street has
+WELL_KNOWN_DEG = 1.5  # the azimuth of a front that others may borrow from
 ASPECTS = (0.05, 20.0)
 TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread to this
 BOTH = "two vanishing points"
@@ -48,7 +50,7 @@ def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
         return ()
     clear = [unhidden(facade) for facade in matted.facades]
     anywhere = np.any(clear, axis=0)
-    found = detect(photo, anywhere)
+    found = detect(photo, anywhere & _framed(photo))
     signals = [signal(photo, found, mask) for mask in clear]
     world, seen, method = orient(signals, vertical(signal(photo, found, anywhere)))
     results = []
@@ -60,6 +62,15 @@ def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
         results.append(elevation(photo, facade, world, rank, method))
         rank += 1
     return tuple(results)
+
+
+def _framed(photo: Photo) -> Mask:
+    """Tell where the exposed frame is, without its own edge, which is a long line."""
+    x0, y0, x1, y1 = photo.frame
+    inner = np.zeros(photo.image.shape, bool)
+    edge = MARGIN_PX + 2
+    inner[y0 + edge : y1 - edge, x0 + edge : x1 - edge] = True
+    return inner
 
 
 def unhidden(facade: Facade) -> Mask:
@@ -109,23 +120,61 @@ def orient(
 ) -> tuple[upright.Upright | None, list[bool], str]:
     """Fit the upright world to all fronts that have a horizontal direction.
 
+    Each front first chooses for itself. Once the camera is known, each may choose
+    again, between its own direction, those of the other fronts, and the ones square to
+    them; if any does, all are fitted again.
+
     Returns: the world, which fronts are part of it, and how it was found.
     """
     up, share = vertical
     chosen = [vanish.best_horizontal(up, s.strict, s.loose, s.weights) for s in signals]
     seen = [c is not None for c in chosen]
-    if not any(seen):
-        return None, seen, BOTH
     kept = [s for s, has in zip(signals, seen, strict=True) if has]
-    front = np.repeat(np.arange(len(kept)), [len(s.loose) for s in kept])
-    world = upright.fit(
-        upright.start(up, np.array([c[0] for c in chosen if c is not None])),
-        np.vstack([s.loose for s in kept]),
-        front,
-        np.concatenate([s.omega for s in kept]),
-        np.concatenate([s.length_px for s in kept]),
-    )
+    if not kept:
+        return None, seen, BOTH
+    start = upright.start(up, np.array([c[0] for c in chosen if c is not None]))
+    world = _fit(start, kept)
+    again = _choose_again(world, kept)
+    if not np.array_equal(again, world.parameters):
+        world = _fit(again, kept)
     return world, seen, BOTH if share > 0 else UPRIGHT
+
+
+def _fit(parameters: Parameters, signals: list[Signal]) -> upright.Upright:
+    """Fit the world to the lines of all fronts, each open to up and to its own."""
+    front = np.repeat(np.arange(len(signals)), [len(s.loose) for s in signals])
+    open_to = np.arange(len(signals) + 1) == front[:, None] + 1
+    open_to[:, 0] = True
+    return upright.fit(
+        parameters,
+        np.vstack([s.loose for s in signals]),
+        open_to,
+        np.concatenate([s.omega for s in signals]),
+        np.concatenate([s.length_px for s in signals]),
+    )
+
+
+def _choose_again(world: upright.Upright, signals: list[Signal]) -> Parameters:
+    """Let each front vote between its own azimuth and those of better known fronts.
+
+    A borrowed azimuth needs only `BORROWED` of the own one's votes, since the street
+    is evidence as well.
+    """
+    parameters = world.parameters.copy()
+    theta = world.parameters[3:]
+    sd = np.sqrt(np.diag(world.covariance))[3:]
+    for i, s in enumerate(signals):
+        better = theta[(sd < sd[i]) & (sd < np.radians(WELL_KNOWN_DEG))]
+        if not len(better):
+            continue
+        azimuths = np.concatenate([theta[i : i + 1], better, better + np.pi / 2])
+        trial = np.concatenate([world.parameters[:3], azimuths])
+        points = upright.vanishing_points(trial)
+        away = vanish.distance_deg(points[:1], s.loose)[0] > vanish.VERTICAL_DEG
+        votes = vanish.vote(points[1:], s.loose[away], s.weights[away])
+        votes[0] *= BORROWED
+        parameters[3 + i] = azimuths[votes.argmax()]
+    return parameters
 
 
 def elevation(

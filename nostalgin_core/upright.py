@@ -14,7 +14,7 @@ focal length (`vanish.to_unit`).
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from nostalgin_core.arrays import Homogeneous, Lines
 
@@ -24,6 +24,11 @@ ROLL_RAD = (0.0, 0.05)  # surveyors level their tripods
 TILT_RAD = (0.1, 0.25)
 END_SD_PX = 0.35  # of a line's end, across the line
 BENT_SD_DEG = 0.35  # how far from parallel real cornices and sills are
+STEPS = 3  # Gauss-Newton steps a round
+DELTA = 1e-6  # for differences; everything here is of the order of one
+TIE_DEG = 4.0  # fronts this near to parallel or square are taken to be so,
+TIE_SD_DEG = 1.0  # to within this
+TOGETHER = 4.0  # lines to one independent measurement
 GATES_DEG = (3.0, 2.0, 1.5, 1.5)  # a line beyond has no say, round by round
 
 
@@ -92,7 +97,7 @@ def sines(
 def fit(
     parameters: Float[np.ndarray, " p"],
     lines: Lines,
-    front: Int[np.ndarray, " n"],
+    open_to: Bool[np.ndarray, "n k"],
     omega: Float[np.ndarray, " n"],
     length_px: Float[np.ndarray, " n"],
     *,
@@ -100,39 +105,115 @@ def fit(
 ) -> Upright:
     """Fit the parameters to all lines together, robustly.
 
-    A line belongs to the vertical or to its own front's horizontal, whichever is
-    nearer, or beyond the gate to neither; that is decided anew each round, and the gate
-    narrows. Within a round, Gauss-Newton steps with Cauchy's weights. A line's
-    direction is known to END_SD over half its length, plus BENT_SD.
+    A line belongs to that axis, of those it is open to, which it misses least, or
+    beyond the gate to none; that is decided anew each round, and the gate narrows.
+    Within a round, Gauss-Newton steps with Cauchy's weights. A line's direction is
+    known to END_SD over half its length, plus BENT_SD.
+
+    Fronts within `TIE_DEG` of parallel or of a right angle are pulled there by a weak
+    prior: streets are straight and most corners square, and where they aren't, the
+    fronts' own lines say so.
+
+    The covariance is the inverse of the normal matrix, scaled by the residuals' own
+    spread, which in a photo of clean edges is smaller than assumed. Lines err together
+    (one sill, one cornice), so only every `TOGETHER`th counts as independent.
     """
     sd = np.hypot(END_SD_PX / np.maximum(length_px / 2, 1.0), np.radians(BENT_SD_DEG))
     prior_mean = np.array([LOG_FOCAL[0], ROLL_RAD[0], TILT_RAD[0]])
     prior_sd = np.array([focal_sd, ROLL_RAD[1], TILT_RAD[1]])
     p = parameters.copy()
     fronts = len(p) - 3
-    zero = np.zeros(len(lines), np.intp)
     for gate in GATES_DEG:
-        up, across = sines(p, lines, zero), sines(p, lines, front + 1)
-        axis = np.where(np.abs(up) < np.abs(across), 0, front + 1)
-        near = np.minimum(np.abs(up), np.abs(across)) < np.sin(np.radians(gate))
+        missed = np.abs(sines_to_all(p, lines))
+        missed[~open_to] = np.inf
+        axis = missed.argmin(axis=1)
+        near = missed.min(axis=1) < np.sin(np.radians(gate))
         chosen, axis_in = lines[near], axis[near]
         sd_in, omega_in = sd[near], omega[near]
-        for _ in range(4):
+        for _ in range(STEPS):
             r = sines(p, chosen, axis_in)
-            jacobian = np.empty((len(r), len(p)))
-            for i in range(len(p)):
-                step = np.zeros(len(p))
-                step[i] = 1e-6
-                jacobian[:, i] = (sines(p + step, chosen, axis_in) - r) / 1e-6
+            jacobian = slopes(p, chosen, axis_in, r)
             weight = omega_in / sd_in**2 / (1 + (r / (2 * sd_in)) ** 2)
             normal = jacobian.T @ (jacobian * weight[:, None])
             gradient = jacobian.T @ (weight * r)
+            spread = _spread(r, sd_in, omega_in)
+            tie_normal, tie_gradient = _ties(p[3:])
+            normal[3:, 3:] += tie_normal
+            gradient[3:] += tie_gradient
             normal[[0, 1, 2], [0, 1, 2]] += 1 / prior_sd**2
             gradient[:3] += (p[:3] - prior_mean) / prior_sd**2
             normal[range(3, 3 + fronts), range(3, 3 + fronts)] += 1e-3
             p = p - np.clip(np.linalg.solve(normal, gradient), -0.2, 0.2)
     support = np.bincount(axis_in, omega_in, minlength=fronts + 1)
-    return Upright(p, np.linalg.inv(normal), support)
+    independent = normal.copy()
+    scaled = jacobian.T @ (jacobian * weight[:, None])
+    independent += scaled * (1 / (TOGETHER * spread) - 1)
+    return Upright(p, np.linalg.inv(independent), support)
+
+
+def slopes(
+    parameters: Float[np.ndarray, " p"],
+    lines: Lines,
+    axis: Int[np.ndarray, " n"],
+    here: Float[np.ndarray, " n"],
+) -> Float[np.ndarray, "n p"]:
+    """Differentiate `sines` by the parameters, numerically.
+
+    An azimuth moves its own front's lines alone, so all azimuths take one step.
+    """
+    jacobian = np.zeros((len(here), len(parameters)))
+    for i in range(3):
+        step = np.zeros(len(parameters))
+        step[i] = DELTA
+        jacobian[:, i] = (sines(parameters + step, lines, axis) - here) / DELTA
+    step = np.zeros(len(parameters))
+    step[3:] = DELTA
+    turned = (sines(parameters + step, lines, axis) - here) / DELTA
+    level = np.flatnonzero(axis > 0)
+    jacobian[level, axis[level] + 2] = turned[level]
+    return jacobian
+
+
+def sines_to_all(
+    parameters: Float[np.ndarray, " p"], lines: Lines
+) -> Float[np.ndarray, "n k"]:
+    """Give `sines` of every line to every axis."""
+    count = len(parameters) - 2
+    each = [
+        sines(parameters, lines, np.full(len(lines), axis)) for axis in range(count)
+    ]
+    return np.column_stack(each)
+
+
+def _spread(
+    r: Float[np.ndarray, " n"],
+    sd: Float[np.ndarray, " n"],
+    omega: Float[np.ndarray, " n"],
+) -> float:
+    """Measure the residuals' variance over the assumed one, robustly; at least 0.1."""
+    if omega.sum() < 1:
+        return 1.0
+    square = (r / sd) ** 2
+    weight = omega / (1 + square / 4)
+    return max(float(weight @ square / weight.sum()), 0.1)
+
+
+def _ties(
+    theta: Float[np.ndarray, " f"],
+) -> tuple[Float[np.ndarray, "f f"], Float[np.ndarray, " f"]]:
+    """Pull fronts that are nearly parallel or square to one another all the way."""
+    fronts = len(theta)
+    normal, gradient = np.zeros((fronts, fronts)), np.zeros(fronts)
+    for i in range(fronts):
+        for j in range(i):
+            off = (theta[i] - theta[j] + np.pi / 4) % (np.pi / 2) - np.pi / 4
+            if abs(off) < np.radians(TIE_DEG):
+                weight = 1 / np.radians(TIE_SD_DEG) ** 2 / fronts
+                normal[[i, j], [i, j]] += weight
+                normal[[i, j], [j, i]] -= weight
+                gradient[i] += weight * off
+                gradient[j] -= weight * off
+    return normal, gradient
 
 
 def directions_sd_deg(world: Upright, rank: int) -> tuple[float, float]:

@@ -18,6 +18,8 @@ from nostalgin_core.arrays import Homogeneous, Lines, Mask
 
 ALIGNED_DEG = 2.0  # t_a
 VERTICAL_DEG = 4.0  # lines nearer to the vertical point say nothing of the horizontal
+MOST_OFF_DEG = 30.0  # of a candidate from a right angle to the vertical
+OFF_SD_DEG = 15.0  # one standard deviation of the same
 APART_DEG = 30.0  # t_o, which the paper leaves open
 
 
@@ -180,7 +182,7 @@ def best_horizontal(
     `most` longest strict lines (of the loose ones where fewer than six are left), and
     each loose line's intersection with the horizon that the vertical point and the
     prior's focal length imply. A candidate's votes count less the farther it is from a
-    right angle to the vertical, with 10 degrees for one standard deviation.
+    right angle to the vertical, which is itself uncertain, as is the focal length.
     """
     strict = strict[distance_deg(vertical[None], strict)[0] > VERTICAL_DEG]
     away = distance_deg(vertical[None], loose)[0] > VERTICAL_DEG
@@ -191,7 +193,7 @@ def best_horizontal(
         strict = loose
     longest = np.argsort(-lengths(strict), kind="stable")[:most]
     points = intersections(without_collinear(strict[longest]))
-    points = points[np.abs(points @ vertical) < np.sin(np.radians(20))]
+    points = points[np.abs(points @ vertical) < np.sin(np.radians(MOST_OFF_DEG))]
     one = np.ones((len(loose), 1))
     rows = np.cross(np.hstack([loose[:, :2], one]), np.hstack([loose[:, 2:], one]))
     level = np.cross(rows, vertical)
@@ -200,7 +202,7 @@ def best_horizontal(
     points = without_doubles(np.vstack([points, level]))
     off = np.degrees(np.arcsin(np.clip(points @ vertical, -1, 1)))
     votes = vote(points, loose, weights)
-    best = (votes * np.exp(-0.5 * (off / 10) ** 2)).argmax()
+    best = (votes * np.exp(-0.5 * (off / OFF_SD_DEG) ** 2)).argmax()
     return points[best], float(votes[best])
 
 

@@ -58,7 +58,7 @@ def photograph(
     image = np.full((4 * h // 2, 4 * w // 2), 215, np.uint8)
     double = np.diag([2.0, 2.0, 1.0])
     double[:2, 2] = 0.5
-    corner = np.array([0.0, -0.1, 4.4])
+    corner = np.array([0.0, -0.1, 3.6])
     height = 2.6
     quads, facades = [], []
     start = corner if len(aspects) > 1 else corner - np.array([0.7, 0.0, 0.0])
