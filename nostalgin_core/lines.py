@@ -90,7 +90,8 @@ def edges(
         mask &= where
     mask[[0, -1], :] = False
     mask[:, [0, -1]] = False
-    magnitude = cv2.magnitude(dx.astype(np.float32), dy.astype(np.float32))
+    # cv2.magnitude would round by where in memory the arrays happen to lie
+    magnitude = np.sqrt(dx.astype(np.float32) ** 2 + dy.astype(np.float32) ** 2)
     y, x = np.nonzero(mask)
     gx, gy, peak = dx[y, x] * 1.0, dy[y, x] * 1.0, magnitude[y, x].astype(np.float64)
     steep = np.maximum(np.abs(gx), np.abs(gy))
