@@ -41,6 +41,7 @@ def models(
 ) -> list[site.BlockModel]:
     """Gather the blocks' models, in the order of their numbers."""
     why = reasons(runs.read_table(store, run, "rejections"), rows)
+    taken = of_buildings(runs.read_table(store, run, "photos"), rows)
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
     records = [json.loads(row["record"]) for row in ordered]
     moves = places(records, rows)
@@ -49,6 +50,12 @@ def models(
         move = moves[row["block"]]
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
+            shown = {photo["key"] for photo in building["photos"]}
+            building["photos"] += [
+                photo
+                for photo in taken.get(building["id"], [])
+                if photo["key"] not in shown
+            ]
         made.append(
             site.BlockModel(
                 name=row["block"],
@@ -79,6 +86,20 @@ def places(records: list[dict[str, Any]], rows: Sequence[Row]) -> dict[str, city
             for record in records
         ]
     )
+
+
+def of_buildings(
+    photos: list[dict[str, Any]], rows: Sequence[Row]
+) -> dict[str, list[dict[str, Any]]]:
+    """List all photos of each building: those that it could not use are shown too."""
+    keys = {row["name"]: row["key"] for row in photos}
+    told: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
+    for row in rows:
+        if row.front is not None and row.photo in keys:
+            photo = {"key": keys[row.photo], "used": False, "caption": row.photo}
+            building = f"{row.front.block}-{row.front.lot}"
+            told[building][row.photo] = photo | {"credit": row.credit}
+    return {building: list(own.values()) for building, own in told.items()}
 
 
 def reasons(
