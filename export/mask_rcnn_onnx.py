@@ -22,6 +22,7 @@ import torch
 from jaxtyping import Float32
 from onnx import TensorProto, helper, numpy_helper
 
+import nostalgin_core
 from export.mask_rcnn import MaskRCNN, load_weights
 from export.weights import CAST, read_weights
 from nostalgin_core import session
@@ -101,6 +102,13 @@ def disparity(
         parts = zip(want, got, strict=True)
         worst = max(worst, *(float(np.abs(a - b).max(initial=0)) for a, b in parts))
     return worst
+
+
+def open_shipped() -> session.Session:
+    """Open the network that ships with the core, checked against its lock."""
+    folder = Path(nostalgin_core.__file__).parent / "models"
+    sums = json.loads((folder / "models.lock").read_text())
+    return session.load((folder / "segment.onnx").read_bytes(), sums["segment.onnx"])
 
 
 def lock(folder: Path) -> None:
