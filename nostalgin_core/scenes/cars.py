@@ -9,6 +9,7 @@ import numpy as np
 
 from nostalgin_core.scenes import lens
 from nostalgin_core.scenes.lens import Camera
+from nostalgin_core.scenes.people import smooth
 from nostalgin_core.scenes.sprite import Patch, Sprite, cut_out
 
 # Outlines as rows of x along the car from the tail, z up, in metres.
@@ -136,6 +137,15 @@ def shadow_on_ground(
     return cut_out(None, depth_m, [(pixels, 22.0)], shape, blur_px=soft, opacity=0.62)
 
 
+def rounded(outline: np.ndarray) -> np.ndarray:
+    """Round an outline as a press rounds sheet metal."""
+    return smooth([(float(x), float(z)) for x, z in outline])
+
+
+BODY, NOSE = rounded(SEDAN), rounded(BONNET)
+WINGS = tuple(rounded(fender) for fender in FENDERS)
+
+
 def wheel(middle_m: float, radius_m: float, *, up_m: float = 0.0) -> np.ndarray:
     """Outline a wheel, or something round, that rests at this height."""
     turn = np.linspace(0, 2 * np.pi, 18, endpoint=False)
@@ -148,18 +158,18 @@ Slice = tuple[float, np.ndarray, float]
 
 def sedan_slices(rng: np.random.Generator) -> list[Slice]:
     """List the slices of a car as distance across, outline, tone."""
-    paint = float(rng.choice([26, 32, 40, 52, 70, 95, 140, 185]))
-    top = min(paint * 1.3 + 46, 235.0)
+    paint = float(rng.choice([24, 27, 31, 36, 44, 56, 74, 95, 125, 155]))
+    top = min(paint * 1.3 + 50, 235.0)
     slices: list[Slice] = []
-    for y in np.linspace(-0.55, 0.55, 12):
-        slices.append((float(y), BONNET, paint * 0.9 + 20))
-        slices.append((float(y), SEDAN, top if abs(y) < 0.5 else paint * 1.05))
+    for y in np.linspace(-0.58, 0.58, 16):
+        crown = 1.0 - 0.4 * abs(y)
+        slices.append((float(y), NOSE, paint * 0.8 + 34 * crown))
+        slices.append((float(y), BODY, top * crown + paint * (1 - crown)))
         slices.append((float(y), SCREEN, 46.0))
         slices.append((float(y), REAR, 40.0))
-        grille = abs(y) < 0.3
-        if grille:
+        if abs(y) < 0.3:
             bars = np.array([[4.44, 0.45], [4.46, 0.75], [4.3, 1.02], [4.27, 0.98]])
-            slices.append((float(y), bars, 90.0 if int(y * 40) % 2 else 170.0))
+            slices.append((float(y), bars, 90.0 if round(y * 26) % 2 else 165.0))
     for sign in (-1, 1):
         slices.extend(sedan_side(rng, sign, paint, top))
     return slices
@@ -171,29 +181,48 @@ def sedan_side(
     """List the slices of one side: body, glass, fenders, wheels, running board."""
     side: list[Slice] = []
     body = paint * (0.95 + 0.1 * rng.random())
-    side.append((sign * 0.62, SEDAN, body))
-    side.append((sign * 0.625, light_edge(SEDAN), top))
+    side.append((sign * 0.62, BODY, body))
+    # The side curves: light from above on its shoulder, dark towards the ground.
+    low = np.array([[0.1, 0.42], [0.05, 0.72], [4.3, 0.72], [4.35, 0.42]])
+    side.append((sign * 0.621, low, body * 0.72))
+    shoulder = np.array([[0.35, 1.0], [0.3, 1.08], [2.9, 1.14], [2.9, 1.05]])
+    side.append((sign * 0.622, shoulder, 0.5 * (body + top)))
+    side.append((sign * 0.625, edge(BODY, 0.06), top))
     side.extend(
-        (sign * 0.63, glass, float(rng.uniform(30, 66))) for glass in SIDE_GLASS
+        (sign * 0.63, glass, float(rng.uniform(28, 60))) for glass in SIDE_GLASS
     )
-    seam = np.array([[1.63, 0.45], [1.63, 1.5], [1.655, 1.5], [1.655, 0.45]])
-    side.append((sign * 0.632, seam, body * 0.6))
-    belt = np.array([[0.6, 1.08], [0.6, 1.11], [4.2, 1.05], [4.2, 1.02]])
-    side.append((sign * 0.634, belt, min(body * 1.3 + 20, 240.0)))
+    for seam in (0.95, 1.63, 2.72):
+        line = np.array([[seam, 0.45], [seam, 1.16], [seam + 0.02, 1.16]])
+        line = np.vstack([line, [seam + 0.02, 0.45]])
+        side.append((sign * 0.632, line, body * 0.5))
+    belt = np.array([[0.6, 1.09], [0.6, 1.11], [4.2, 1.06], [4.2, 1.04]])
+    side.append((sign * 0.634, belt, min(body * 1.2 + 60, 240.0)))
+    grip = np.array([[1.75, 1.0], [1.75, 1.03], [1.9, 1.03], [1.9, 1.0]])
+    side.append((sign * 0.635, grip, 200.0))
     for x in WHEELS:
-        side.append((sign * 0.7, wheel(x, 0.37), 16.0))
-        side.append((sign * 0.8, wheel(x, 0.35), 24.0))
-    for y in np.linspace(0.62, 0.84, 6):
-        for fender in FENDERS:
-            tone = top if y < 0.8 else paint * 0.85
-            side.append((sign * float(y), fender, tone))
-        side.append((sign * float(y), BOARD, 30.0))
+        side.append((sign * 0.7, wheel(x, 0.37), 14.0))
+        side.append((sign * 0.8, wheel(x, 0.35), 22.0))
+    for y in np.linspace(0.6, 0.86, 9):
+        for wing in WINGS:
+            bright = 1.0 - (float(y) - 0.6) / 0.26
+            side.append((sign * float(y), wing, paint + (top - paint) * bright * 0.9))
+        side.append((sign * float(y), BOARD, 28.0))
+    for wing in WINGS:
+        side.append((sign * 0.865, wing, paint * 0.82))
+        side.append((sign * 0.866, edge(wing, 0.035), min(top + 25, 240.0)))
+    side.extend(sedan_wheels(rng, sign))
+    return side
+
+
+def sedan_wheels(rng: np.random.Generator, sign: int) -> list[Slice]:
+    """List the slices of the wheels, lamps and bumpers of one side."""
+    side: list[Slice] = []
+    rim = float(rng.choice([60, 90, 150, 190]))
     for x in WHEELS:
-        side.append((sign * 0.85, wheel(x, 0.34), 22.0))
-        rim = wheel(x, 0.21, up_m=0.13)
-        side.append((sign * 0.86, rim, float(rng.choice([70, 150, 190]))))
-        hub = wheel(x, 0.09, up_m=0.25)
-        side.append((sign * 0.865, hub, 200.0))
+        side.append((sign * 0.87, wheel(x, 0.33), 20.0))
+        side.append((sign * 0.875, wheel(x, 0.2, up_m=0.13), rim))
+        side.append((sign * 0.877, wheel(x, 0.15, up_m=0.18), rim * 0.75))
+        side.append((sign * 0.88, wheel(x, 0.08, up_m=0.25), 205.0))
     for y in (0.48, 0.55, 0.6):
         lamp = wheel(4.2, 0.13, up_m=0.66)
         side.append((sign * y, lamp, 150.0 if y < 0.6 else 205.0))
@@ -203,10 +232,11 @@ def sedan_side(
     return side
 
 
-def light_edge(outline: np.ndarray) -> np.ndarray:
-    """Take the roof line of an outline as a thin band."""
-    roof = outline[2:9]
-    return np.concatenate([roof, (roof - [0.0, 0.07])[::-1]])
+def edge(outline: np.ndarray, wide_m: float) -> np.ndarray:
+    """Take the upper rim of an outline as a thin band."""
+    middle = outline[:, 1].min() + 0.55 * np.ptp(outline[:, 1])
+    rim = outline[outline[:, 1] > middle]
+    return np.concatenate([rim, (rim - [0.0, wide_m])[::-1]])
 
 
 def truck_slices(rng: np.random.Generator) -> list[Slice]:

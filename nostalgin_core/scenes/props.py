@@ -174,7 +174,8 @@ def board_picture(text: str, arrow: float) -> tuple[np.ndarray, np.ndarray]:
     tone[tip:] = 170.0
     tone[tip + 3 : -3, 3:-3] = 24.0
     face = tone[tip + 3 : -3, 3:-3]
-    font = cv2.FONT_HERSHEY_DUPLEX
+    font = cv2.FONT_HERSHEY_SIMPLEX
+    text = text.replace(" -", "  - ").replace(" M", "   M")
     (long, tall), _ = cv2.getTextSize(text, font, 1.0, 2)
     fit = min(0.62 * face.shape[0] / tall, 0.9 * face.shape[1] / long)
     ink = lettered(text, face.shape, font=font, scale=fit, bold_px=1.4)
