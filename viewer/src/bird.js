@@ -4,6 +4,7 @@ import { Box3, MathUtils, Vector3 } from 'three';
 
 const LOOK_RAD_PX = 0.005;
 const PAN_PER_S = 0.7; // of the distance
+export const ELEVATION_RAD = 0.66;
 const MARGIN = 0.84; // of the view's half, for what lies round its edge
 const ZOOM = 1.12; // a notch of the wheel
 
@@ -12,7 +13,7 @@ export class Bird {
     this.target = new Vector3();
     this.distance = 120;
     this.azimuth = 0; // 0 looks north
-    this.elevation = 0.75;
+    this.elevation = ELEVATION_RAD;
     this.far = 1000;
   }
 
@@ -20,7 +21,7 @@ export class Bird {
   frame(points, camera, azimuth = this.azimuth) {
     this.target.setY(0);
     this.azimuth = azimuth;
-    this.elevation = 0.66;
+    this.elevation = ELEVATION_RAD;
     const box = new Box3().setFromPoints(points);
     box.getCenter(this.target).setY(0);
     const eye = camera.clone();

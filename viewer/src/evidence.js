@@ -6,7 +6,7 @@ export const ASSUMED = 6;
 
 export const KINDS = [
   { code: 1, name: 'Photographed', color: null },
-  { code: 2, name: 'Photographed, at a soft edge', color: '#f0e442' },
+  { code: 2, name: 'Photographed, at a soft edge', color: '#f0e442', strength: 0.42 },
   { code: 3, name: 'Hidden in the photograph, painted in', color: '#e69f00' },
   { code: 4, name: 'Beyond the photograph’s frame, painted in', color: '#d55e00' },
   { code: 5, name: 'Copied from another side', color: '#56b4e9' },
@@ -31,12 +31,17 @@ export function codeOf(red, green, blue) {
 /** Red, green, blue and strength for codes 0 to 7, each from 0 to 1. */
 export function palette() {
   const rows = Array.from({ length: 8 }, () => [0, 0, 0, 0]);
-  rows[NOTHING] = rows[ASSUMED] = rgb(KINDS[5].color);
-  for (const { code, color } of KINDS) if (color) rows[code] = rgb(color);
+    for (const { code, color, strength = 1 } of KINDS) if (color) rows[code] = [...rgb(color), strength];
+  rows[NOTHING] = rows[ASSUMED];
   return rows;
+}
+
+/** What a code means, in a reader's words; a plain surface is an assumption. */
+export function nameOfCode(code) {
+  return (KINDS.find((kind) => kind.code === code) ?? KINDS.at(-1)).name;
 }
 
 function rgb(hex) {
   const n = parseInt(hex.slice(1), 16);
-  return [(n >> 16) / 255, ((n >> 8) & 255) / 255, (n & 255) / 255, 1];
+  return [(n >> 16) / 255, ((n >> 8) & 255) / 255, (n & 255) / 255];
 }

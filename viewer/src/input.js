@@ -11,6 +11,7 @@ export class Input {
     this.look = [0, 0]; // pixels turned since last asked
     this.zoom = 0; // notches since last asked
     this.stick = [0, 0];
+    this.used = false; // has anybody done anything yet?
     this.onClick = () => {};
     this.onKey = () => {};
     this.#keyboard();
@@ -59,6 +60,7 @@ export class Input {
       if (known && !scrolls) {
         event.preventDefault();
         this.keys.add(event.code);
+        this.used = true;
       } else if (event.code.startsWith('Shift')) this.keys.add(event.code);
       else if (!event.repeat) this.onKey(event);
     });
@@ -73,6 +75,7 @@ export class Input {
     canvas.addEventListener('pointerdown', (event) => {
       last = [event.clientX, event.clientY];
       travelled = 0;
+      this.used = true;
       canvas.setPointerCapture?.(event.pointerId);
       canvas.focus();
     });

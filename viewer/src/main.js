@@ -2,8 +2,9 @@
 
 import { MathUtils, Quaternion, Raycaster, Vector2, Vector3 } from 'three';
 
-import { Bird } from './bird.js';
+import { Bird, ELEVATION_RAD } from './bird.js';
 import { open } from './city.js';
+import { nameOfCode } from './evidence.js';
 import { Finder } from './finder.js';
 import { Input } from './input.js';
 import { fillLegend } from './legend.js';
@@ -20,6 +21,7 @@ import { nameOf } from './words.js';
 const $ = (id) => document.getElementById(id);
 const FLIGHT_S = 1.1;
 const FARTHEST_M = 28; // to step back from a front
+const MOST_WALLS = 300; // are looked at to choose a view
 const LONGEST_STEP_S = 0.1;
 const SETTLING_FRAMES = 3; // after a change, so that a sharp picture stays
 
@@ -135,6 +137,7 @@ class Page {
     const dt = Math.min((time - (this.lastTime ?? time)) / 1000, LONGEST_STEP_S);
     this.lastTime = time;
     if (this.held) return;
+    if (this.input.used) document.body.classList.add('walked');
     this.step(dt);
     this.city.update(this.walker.feet);
     if (!this.changed()) return;
@@ -229,14 +232,17 @@ class Page {
     this.ray.setFromCamera(new Vector2(x, y), this.stage.camera);
     const hit = this.ray.intersectObjects([...this.city.walls], false)[0];
     const found = hit && this.city.buildingAt(hit.object, hit.face);
-    return found ? { ...found.record, block: found.block.block, distance: hit.distance } : null;
+    if (!found) return null;
+    const code = hit.uv ? hit.object.userData.codeAt(hit.uv.x, hit.uv.y) : 6;
+    const { block, record } = found;
+    return { ...record, block: block.block, distance: hit.distance, evidence: nameOfCode(code) };
   }
 
-  select(id) {
+  select(id, here = null) {
     const found = this.city.buildings.get(id);
     if (!found) return;
     this.mark(id);
-    this.panel.show(found);
+    this.panel.show(found, here);
   }
 
   mark(id) {
@@ -274,21 +280,27 @@ class Page {
     press('KeyB', on);
   }
 
-  /** The side from which most photographs are seen; of equals, the one ahead. */
+  /** The side from which most of the photographs can be seen; of equals, the one ahead. */
   bestAzimuth() {
-    const sides = Array.from({ length: 24 }, (_, i) => (i * Math.PI) / 12);
+    const walls = [...this.city.buildings.values()].flatMap(({ shape }) => shape?.walls ?? []);
+    const fronts = walls.filter(({ kind }) => kind === 'own').slice(0, MOST_WALLS);
+    const sides = Array.from({ length: 16 }, (_, i) => (i * Math.PI) / 8);
     const worth = sides.map((azimuth) => {
-      const towards = [Math.sin(azimuth), Math.cos(azimuth)];
-      let sum = 0;
-      for (const { shape } of this.city.buildings.values()) {
-        for (const { a, b, out, kind } of shape?.walls ?? []) {
-          const facing = Math.max(0, out[0] * towards[0] + out[1] * towards[1]);
-          if (kind === 'own') sum += facing * Math.min(20, Math.hypot(b[0] - a[0], b[1] - a[1]));
-        }
-      }
-      return sum * (1 + 0.15 * Math.cos(azimuth - this.walker.yaw));
+      const sum = fronts.reduce((total, wall) => total + this.worth(wall, azimuth), 0);
+      return sum * (1 + 0.1 * Math.cos(azimuth - this.walker.yaw));
     });
     return sides[worth.indexOf(Math.max(...worth))];
+  }
+
+  /** How much of a wall is seen from far and above; 0 where something hides it. */
+  worth({ a, b, out, top }, azimuth) {
+    const level = new Vector3(Math.sin(azimuth), 0, Math.cos(azimuth));
+    const facing = out[0] * level.x + out[1] * level.z;
+    if (facing <= 0.1) return 0;
+    const from = new Vector3((a[0] + b[0]) / 2 + 0.3 * out[0], 0.6 * top, (a[1] + b[1]) / 2 + 0.3 * out[1]);
+    this.ray.set(from, level.setY(Math.tan(ELEVATION_RAD)).normalize());
+    if (this.ray.intersectObjects([...this.city.walls], false).length) return 0;
+    return facing * Math.min(20, Math.hypot(b[0] - a[0], b[1] - a[1])) * Math.min(40, top);
   }
 
   /** Points that the bird's view has to hold. */
@@ -320,7 +332,7 @@ class Page {
 
   click(x, y) {
     const found = this.pick(x, y);
-    if (found) this.select(String(found.id));
+    if (found) this.select(String(found.id), found.evidence);
     else this.panel.close();
   }
 

@@ -18,7 +18,8 @@ export class Panel {
     return !this.element.hidden;
   }
 
-  show({ record, block, shape }) {
+  /** `here` names what the very spot rests on that was clicked. */
+  show({ record, block, shape }, here = null) {
     if (!this.open) this.before = document.activeElement;
     const name = nameOf(record);
     const heading = make('h2', { id: 'panel-name', textContent: name });
@@ -34,7 +35,7 @@ export class Panel {
       heading,
       make('p', { className: 'where', textContent: where.filter(Boolean).join(' · ') }),
       ...photographs(record, name),
-      facts(record),
+      facts(record, here),
       ...unused(record),
       visit,
     );
@@ -88,9 +89,10 @@ export function local(file) {
   return typeof file === 'string' && /^photos\/[\w.-]+$/.test(file) && !file.includes('..');
 }
 
-function facts(record) {
+function facts(record, here) {
   const rows = [
     ['Seen by a camera', share(record)],
+    ['Where you clicked', here],
     ['Street', record.street],
     ['Year', record.year],
     ['Width', metres(record.width_m, record.width_sd_m)],

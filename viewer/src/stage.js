@@ -73,8 +73,7 @@ export class Stage {
   /** Adds what is known of a block only once its model is there. */
   settle(block, shapes) {
     this.pave(block.name, [outlineOf(shapes)]);
-    const walls = shapes.flatMap((shape) => shape.walls);
-    this.scene.add(shade(walls), edges(walls, INK, 0.35));
+    this.scene.add(shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35));
     for (const { top } of shapes) this.box.max.y = Math.max(this.box.max.y, top);
   }
 
@@ -84,18 +83,21 @@ export class Stage {
       this.scene.remove(this.chosen);
       this.chosen.geometry.dispose();
     }
-    this.chosen = shape ? edges(shape.walls, 0xf4d58a, 1) : null;
+    this.chosen = shape ? edges([shape], 0xf4d58a, 1) : null;
     if (this.chosen) this.scene.add(this.chosen);
   }
 }
 
-/** The outlines of walls, a finger's breadth before them. */
-function edges(walls, color, opacity) {
+/** The outlines of walls up to the roof (a gable shows its own), just before them. */
+function edges(shapes, color, opacity) {
   const position = [];
-  for (const { a, b, out, bottom, top } of walls) {
-    const at = ([x, z], y) => [x + out[0] * 0.02, y, z + out[1] * 0.02];
-    position.push(...at(a, bottom), ...at(a, top), ...at(a, top), ...at(b, top));
-    position.push(...at(b, top), ...at(b, bottom));
+  for (const { walls, roof } of shapes) {
+    for (const { a, b, out, bottom, top } of walls) {
+      const at = ([x, z], y) => [x + out[0] * 0.02, y, z + out[1] * 0.02];
+      const end = Math.min(top, roof || top);
+      position.push(...at(a, bottom), ...at(a, end), ...at(b, end), ...at(b, bottom));
+      if (end === top) position.push(...at(a, end), ...at(b, end));
+    }
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new Float32BufferAttribute(position, 3));

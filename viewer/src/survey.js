@@ -7,7 +7,7 @@ const SAME_PLANE_M = 0.05;
 const RANK = { plain: 0, copied: 1, own: 2 };
 
 /**
- * Map from feature number to `{ walls, roofs, top }`, in the frame of the world.
+ * Map from feature number to `{ walls, roofs, top, roof }` (heights of the two last), in the frame of the world.
  *
  * A wall is `{ a, b, out, bottom, top, kind }`: the ends of its foot as [x, z], seen from
  * outside a lies on the left; `out` is its outward normal as [x, z]; `kind` is 'own' where
@@ -29,14 +29,17 @@ export function survey(mesh) {
     if (normal.lengthSq() < 1e-12) continue;
     normal.normalize();
     const feature = features.getX(rows[0]);
-    if (!found.has(feature)) found.set(feature, { planes: new Map(), roofs: [], top: 0 });
+    if (!found.has(feature)) found.set(feature, { planes: new Map(), roofs: [], top: 0, roof: 0 });
     const shape = found.get(feature);
     shape.top = Math.max(shape.top, ...corners.map((c) => c.y));
-    if (normal.y > STEEP) shape.roofs.push(corners.map((c) => [c.x, c.z]));
-    else if (Math.abs(normal.y) <= STEEP) addWall(shape.planes, corners, normal, kindOf(mesh, uv, rows));
+    if (normal.y > STEEP) {
+      shape.roofs.push(corners.map((c) => [c.x, c.z]));
+      shape.roof = Math.max(shape.roof, corners[0].y);
+    }
+    if (Math.abs(normal.y) <= STEEP) addWall(shape.planes, corners, normal, kindOf(mesh, uv, rows));
   }
-  for (const [feature, { planes, roofs, top }] of found) {
-    found.set(feature, { walls: [...planes.values()].map(footOf), roofs, top });
+  for (const [feature, { planes, roofs, top, roof }] of found) {
+    found.set(feature, { walls: [...planes.values()].map(footOf), roofs, top, roof });
   }
   return found;
 }
