@@ -55,20 +55,15 @@ def main(count: int, workers: int) -> None:
             beam = [f"--direct_num_workers={workers}"]
             build(options(folder, beam=beam), Voice(Console(quiet=True)))
         cpu, wall = cpu_seconds() - cpu, time.perf_counter() - wall
-        print(
-            f"build  {len(kept)} photos, {workers} workers: {cpu:.1f} CPU s, {wall:.1f} s"
-        )
-        print(
-            f"       {60 * len(kept) / wall:.1f} photos a minute, peak {peak_gb():.2f} GB"
-        )
+        rate = 60 * len(kept) / wall
+        print(f"build  {len(kept)} photos, {workers} workers: {cpu:.1f} CPU s")
+        print(f"       {rate:.1f} photos a minute, peak {peak_gb():.2f} GB")
         before = cpu_seconds()
         networks = Models().networks(placard=False)
         for path in kept:
             steps.photograph(path.read_bytes(), networks, name=path.name)
         loop = cpu_seconds() - before
-        print(
-            f"loop   {loop:.1f} CPU s (every facade inpainted), peak {peak_gb():.2f} GB"
-        )
+        print(f"loop   {loop:.1f} CPU s, every facade inpainted")
         print(f"build / loop: {cpu / loop:.2f}")
 
 
