@@ -10,6 +10,7 @@ points before and after it, `t_alpha` the turn from which a point is not linear.
 """
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import cv2
 import numpy as np
@@ -350,8 +351,19 @@ def _fit_runs(
     return centre, np.column_stack([cosine, sine]), stray
 
 
+class Detector(Protocol):
+    """Finds the lines of an image, once for each pair of settings."""
+
+    def __call__(
+        self, image: Gray, /, *settings: tuple[int, float]
+    ) -> tuple[Float[np.ndarray, "_ 4"], ...]:
+        """Find lines; a detector without such settings returns the same for each."""
+        ...
+
+
 def detect(
     image: Gray,
+    /,
     *settings: tuple[int, float],
     where: Mask | None = None,
     spread: float = MEDIAN_SPREAD,

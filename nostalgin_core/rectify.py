@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import camera, lines, quad, upright, vanish, warp
+from nostalgin_core import camera, homography, lines, quad, upright, vanish, warp
 from nostalgin_core.arrays import Corners, Lines, Mask, Matrix3, Points
 from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
 
@@ -21,6 +21,7 @@ LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
 LEAST_LINES = 3.0  # whose weights support a front's horizontal
 BORROWED = 0.85  # of its own votes are enough for a direction that the street has
 WELL_KNOWN_DEG = 1.5  # the azimuth of a front that others may borrow from
+MOST_SKEWED = 1e9  # condition of a plane seen edge on
 ASPECTS = (0.05, 20.0)
 TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread to this
 BOTH = "two vanishing points"
@@ -132,7 +133,7 @@ def orient(
     kept = [s for s, has in zip(signals, seen, strict=True) if has]
     if not kept:
         return None, seen, BOTH
-    start = upright.start(up, np.array([c[0] for c in chosen if c is not None]))
+    start = upright.start(up, np.array([c for c in chosen if c is not None]))
     world = _fit(start, kept)
     again = _choose_again(world, kept)
     if not np.array_equal(again, world.parameters):
@@ -186,7 +187,7 @@ def elevation(
     points = quad.hull(facade.amodal)
     if len(points) < 3 or np.min(np.ptp(points, axis=0)) < LEAST_SIDE_PX:
         return _rejected(photo, facade, "facade too small")
-    bounded = _bounded(photo, world.parameters, rank, points)
+    bounded = _bounded(photo, world.parameters, rank, facade, points)
     if bounded is None:
         return _rejected(photo, facade, "quad degenerate")
     aspect, corners = bounded
@@ -219,7 +220,7 @@ def elevation(
         focal_sd_px=world.focal * prior * float(np.sqrt(world.covariance[0, 0]))
         if told
         else None,
-        aspect_sd=_aspect_sd(photo, world, rank, points, aspect),
+        aspect_sd=_aspect_sd(photo, world, rank, corners, aspect),
         method=method,
     )
 
@@ -252,27 +253,36 @@ def _plane(photo: Photo, parameters: Parameters, rank: int, points: Points) -> M
 
 
 def _bounded(
-    photo: Photo, parameters: Parameters, rank: int, points: Points
+    photo: Photo, parameters: Parameters, rank: int, facade: Facade, points: Points
 ) -> tuple[float, Corners] | None:
-    """Bound a front's points: the aspect ratio and the quad, or None if degenerate."""
+    """Bound a front: its aspect ratio and its quad, or None if that degenerates."""
     plane = _plane(photo, parameters, rank, points)
-    if np.linalg.cond(plane) > 1e9:
+    if np.linalg.cond(plane) > MOST_SKEWED:
         return None
     bounds = quad.bounding(plane, points)
     if bounds is None:
         return None
+    bounds = quad.trimmed(facade.amodal, plane, bounds)
+    corners = homography.apply(plane, quad.corners_of(bounds))
     focal = np.exp(parameters[0]) * camera.prior_focal_px(photo.frame)
-    return camera.aspect(bounds[1], focal, photo.frame), bounds[1]
+    return camera.aspect(corners, focal, photo.frame), corners
 
 
 def _aspect_sd(
-    photo: Photo, world: upright.Upright, rank: int, points: Points, aspect: float
+    photo: Photo, world: upright.Upright, rank: int, corners: Corners, aspect: float
 ) -> float:
-    """Carry the world's covariance on to the aspect ratio, to first order."""
+    """Carry the world's covariance on to the aspect ratio, to first order.
+
+    The corners' middles of sides are held, and the rectangle round them is measured
+    again with each parameter moved.
+    """
+    middles = (corners + np.roll(corners, -1, axis=0)) / 2
     slope = np.zeros(len(world.parameters))
     for i in (0, 1, 2, 3 + rank):
         moved = world.parameters.copy()
         moved[i] += 1e-4
-        bounded = _bounded(photo, moved, rank, points)
-        slope[i] = 0.0 if bounded is None else (bounded[0] - aspect) / 1e-4
+        plane = _plane(photo, moved, rank, middles)
+        flat = homography.apply(np.linalg.inv(plane), middles)
+        width, height = flat[1, 0] - flat[3, 0], flat[2, 1] - flat[0, 1]
+        slope[i] = (width / height - aspect) / 1e-4
     return float(np.sqrt(slope @ world.covariance @ slope))

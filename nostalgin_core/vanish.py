@@ -168,15 +168,15 @@ def best_vertical(
     return upwards[votes.argmax()], float(votes.max())
 
 
-def best_horizontal(
+def horizontals(
     vertical: Float[np.ndarray, "3"],
     strict: Float[np.ndarray, "_ 4"],
     loose: Lines,
     weights: Float[np.ndarray, " n"],
     *,
     most: int = 100,
-) -> tuple[Float[np.ndarray, "3"], float] | None:
-    """Choose a front's horizontal vanishing point, and the share of votes for it.
+) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, " m"]]:
+    """List candidates for a front's horizontal vanishing point, with their votes.
 
     Lines that could be vertical are left out. Candidates are the intersections of the
     `most` longest strict lines (of the loose ones where fewer than six are left), and
@@ -188,7 +188,7 @@ def best_horizontal(
     away = distance_deg(vertical[None], loose)[0] > VERTICAL_DEG
     loose, weights = loose[away], weights[away]
     if len(loose) < 2:
-        return None
+        return np.empty((0, 3)), np.empty(0)
     if len(strict) < 6:
         strict = loose
     longest = np.argsort(-lengths(strict), kind="stable")[:most]
@@ -201,9 +201,37 @@ def best_horizontal(
     level = level[norm > 1e-9] / norm[norm > 1e-9, None]
     points = without_doubles(np.vstack([points, level]))
     off = np.degrees(np.arcsin(np.clip(points @ vertical, -1, 1)))
-    votes = vote(points, loose, weights)
-    best = (votes * np.exp(-0.5 * (off / OFF_SD_DEG) ** 2)).argmax()
-    return points[best], float(votes[best])
+    votes = vote(points, loose, weights) * np.exp(-0.5 * (off / OFF_SD_DEG) ** 2)
+    return points, votes
+
+
+def best_horizontal(
+    vertical: Float[np.ndarray, "3"],
+    strict: Float[np.ndarray, "_ 4"],
+    loose: Lines,
+    weights: Float[np.ndarray, " n"],
+) -> Float[np.ndarray, "3"] | None:
+    """Choose the horizontal vanishing point with most votes, if there is any."""
+    points, votes = horizontals(vertical, strict, loose, weights)
+    return points[votes.argmax()] if len(points) else None
+
+
+def spread_out(
+    points: Float[np.ndarray, "m 3"],
+    votes: Float[np.ndarray, " m"],
+    *,
+    most: int,
+    apart_deg: float = APART_DEG,
+) -> Float[np.ndarray, "_ 3"]:
+    """Take candidates by falling votes, none within t_o of one already taken."""
+    taken: list[np.ndarray] = []
+    least = np.cos(np.radians(apart_deg))
+    for i in np.argsort(-votes, kind="stable"):
+        if all(abs(points[i] @ other) < least for other in taken):
+            taken.append(points[i])
+        if len(taken) == most:
+            break
+    return np.array(taken).reshape(-1, 3)
 
 
 def slopes_deg(lines: Lines) -> Float[np.ndarray, " n"]:

@@ -1,0 +1,91 @@
+"""Vanishing points, horizons and quads are compared with the truth.
+
+All angles are in degrees. Directions have no sign: a vanishing point is the same for a
+line seen to the left or to the right.
+"""
+
+from itertools import permutations
+
+import numpy as np
+from jaxtyping import Float
+
+from nostalgin_core import homography
+from nostalgin_core.arrays import Corners, Matrix3
+
+UNMATCHED_DEG = 90.0  # the error of a direction that was not found
+HORIZON_REACH = 0.25  # errors up to this share of the image's height count for the AUC
+
+
+def direction_errors_deg(
+    found: Float[np.ndarray, "m 3"] | None,
+    true_directions: Float[np.ndarray, "k 3"],
+    camera_matrix: Matrix3,
+) -> Float[np.ndarray, " k"]:
+    """Measure each true direction's angle to the found one that is matched to it.
+
+    Found vanishing points become directions through the true camera. They are matched
+    one to one so that the sum of angles is least; a true direction without a partner
+    errs by 90 degrees.
+    """
+    errors = np.full(len(true_directions), UNMATCHED_DEG)
+    if found is None or not len(found):
+        return errors
+    rays = np.linalg.solve(camera_matrix, found.T).T
+    rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
+    truth = true_directions / np.linalg.norm(true_directions, axis=1, keepdims=True)
+    cosines = np.minimum(np.abs(truth @ rays.T), 1.0)
+    angles = np.degrees(np.arccos(cosines))
+    padded = np.full((len(truth), max(len(truth), len(rays))), UNMATCHED_DEG)
+    padded[:, : len(rays)] = angles
+    rows = np.arange(len(truth))
+    best = min(
+        permutations(range(padded.shape[1]), len(truth)),
+        key=lambda columns: padded[rows, columns].sum(),
+    )
+    return padded[rows, best]
+
+
+def horizon_error(
+    found: Float[np.ndarray, "3"], true: Float[np.ndarray, "3"], shape: tuple[int, int]
+) -> float:
+    """Measure how far apart two horizons run within the image, over its height.
+
+    Horizons are homogeneous lines (a, b, c): a x + b y + c = 0 in photo pixels. The
+    distance is along y, the greater of the two at the left and the right edge.
+    """
+    h, w = shape
+    x = np.array([-0.5, w - 0.5])
+    ys = [-(line[0] * x + line[2]) / line[1] for line in (found, true)]
+    return float(np.max(np.abs(ys[0] - ys[1])) / h)
+
+
+def area_under_curve(
+    errors: Float[np.ndarray, " n"], *, reach: float = HORIZON_REACH
+) -> float:
+    """Give the share, in percent, under the curve of errors' cumulative distribution.
+
+    The curve runs from 0 to `reach`; an error of e then adds (reach - e) / reach.
+    """
+    return float(100 * np.mean(np.maximum(reach - errors, 0) / reach))
+
+
+def worst_angle_deg(quad: Corners, photo_from_elevation: Matrix3) -> float:
+    """Measure how far a true quad's corners are from 90 degrees once straightened.
+
+    A quad that the homography tears apart, across its vanishing line, gives 90.
+    """
+    inverse = np.linalg.inv(photo_from_elevation)
+    depth = np.column_stack([quad, np.ones(4)]) @ inverse[2]
+    if np.any(np.abs(depth) < 1e-12) or np.ptp(np.sign(depth)) > 0:
+        return 90.0
+    flat = homography.apply(inverse, quad)
+    side = np.roll(flat, -1, axis=0) - flat
+    side = side / np.linalg.norm(side, axis=1, keepdims=True)
+    cosines = np.abs(np.sum(side * np.roll(side, 1, axis=0), axis=1))
+    return float(np.degrees(np.arcsin(np.minimum(cosines, 1.0))).max())
+
+
+def corner_error(found: Corners, true: Corners) -> float:
+    """Measure the mean distance of a quad's corners, over the true quad's diagonal."""
+    diagonal = np.linalg.norm(true[2] - true[0])
+    return float(np.linalg.norm(found - true, axis=1).mean() / diagonal)
