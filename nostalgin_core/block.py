@@ -12,15 +12,13 @@ from statistics import median
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import house_numbers, street_width
 from nostalgin_core.arrays import Points
 from nostalgin_core.chain import Footprint, Ring, chain
 from nostalgin_core.cuboid import ASSUMED_M, Shown, cuboid
 from nostalgin_core.outline import nominal_headings
 from nostalgin_core.records import Assignment, Block, Building, Front
 
-STREET_M = 18.3  # 60 feet from front to front: a side street of 1811
-AVENUE_M = 30.5  # 100 feet
 FALLBACK_GAP_M = 24.0
 NEIGHBOURS = 4
 WIDTH_SD, HEIGHT_SD = 0.4, 0.6  # of the logarithms: heights vary more than widths
@@ -215,13 +213,6 @@ def _facing(
                 if a.street == b.street:
                     return face(ring, a, b, gap_m=street_width(a.street))
     return None
-
-
-def street_width(street: str) -> float:
-    """Tell a street's width from front to front, by its name alone."""
-    words = street.casefold().split()
-    wide = {"avenue", "ave", "broadway", "boulevard", "bowery", "square"}
-    return AVENUE_M if wide & {word.strip(".,") for word in words} else STREET_M
 
 
 def sides(ring: Ring, fronts: Sequence[Front]) -> list[Side]:

@@ -19,9 +19,9 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import STREET_M, house_numbers, street_width
 from nostalgin_core.arrays import Points
-from nostalgin_core.block import FALLBACK_GAP_M, STREET_M, street_width
+from nostalgin_core.block import FALLBACK_GAP_M
 from nostalgin_core.records import Front
 
 Vector = Float[np.ndarray, " 2"]

@@ -5,13 +5,14 @@ a side are then fitted to its length, once the ring is closed.
 """
 
 import itertools
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import house_numbers, street_width
 from nostalgin_core.records import Front
 
 DEPTH_M = 18.0  # a lot is commonly 60 to 100 feet deep
@@ -19,6 +20,7 @@ KNOWN_SD, ASSUMED_SD = 0.03, 0.4  # relative, of a width
 DEPTH_SD = 0.25  # of a width that is another front's depth
 GROWTH = 1.35  # an assumed width grows by no more: beyond, a gap is left open
 CLOSED_GAP = 0.03  # of a side's length
+WHOLE = 0.75  # of the opposite side's length, from which one front fills its side
 UNKNOWN_JUMP = 3  # next doors are 2 apart: rather there than between those
 
 
@@ -31,6 +33,8 @@ class Piece:
     width_m: float
     width_sd: float  # relative
     depth_m: float
+    lot: str
+    street: str
     numbers: tuple[int, int] | None  # house numbers, to see where lots are missing
 
 
@@ -47,6 +51,8 @@ def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
                 width_m=front.width_m,
                 width_sd=ASSUMED_SD if front.width_assumed else KNOWN_SD,
                 depth_m=front.depth_m or DEPTH_M,
+                lot=front.lot,
+                street=front.street,
                 numbers=house_numbers(front.address),
             )
         )
@@ -56,26 +62,92 @@ def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
 def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
     """Give every corner to one building, which then has a piece on both sides.
 
-    Where no building has fronts on both, the last of the side that ends or the first
-    of the side that starts gets it: the one on the side with fewer fronts, for on a
-    short side (the avenue) lots reach round the corner. Its depth is its other width.
-    A side without fronts belongs to its neighbour that comes first, to its far corner.
+    Where no building has fronts on both, it is the last of the side that ends or the
+    first of the side that starts: see `_claim`. Its depth is its other width. A side
+    without fronts belongs to its neighbour that comes first, to its far corner.
     """
     whole = [list(side) for side in sides]
     count = len(sides)
+    held = Counter(
+        a[-1].building_id
+        for a, b in _corners(sides)
+        if a and b and a[-1].building_id == b[0].building_id
+    )
     for here in range(count if count > 2 else count - 1):
         there = (here + 1) % count
         last = whole[here][-1] if whole[here] else None
         first = whole[there][0] if whole[there] else None
         if last and first and last.building_id == first.building_id:
             continue
-        if last and first and len(sides[here]) <= len(sides[there]):
+        if last and first:
+            ends = _claim(sides, here, last, held, at_end=True)
+            begins = _claim(sides, there, first, held, at_end=False)
+            owner = last if ends <= begins else first
+        else:
+            owner = first or (last if sides[here] else None)
+        if owner is None:
+            continue
+        held[owner.building_id] += 1
+        if owner is last:
             whole[there].insert(0, _round_the_corner(last))
-        elif first:
-            whole[here].append(_round_the_corner(first))
-        elif last and sides[here]:
-            whole[there].insert(0, _round_the_corner(last))
+        else:
+            whole[here].append(_round_the_corner(owner))
     return whole
+
+
+def _corners(
+    sides: Sequence[Sequence[Piece]],
+) -> list[tuple[Sequence[Piece], Sequence[Piece]]]:
+    """Pair each side with the one after it."""
+    following = [*sides[1:], *(sides[:1] if len(sides) > 2 else [])]
+    return list(zip(sides, following, strict=False))
+
+
+def _claim(
+    sides: Sequence[Sequence[Piece]],
+    side: int,
+    piece: Piece,
+    held: Counter[str],
+    *,
+    at_end: bool,
+) -> tuple[bool, bool, float, int]:
+    """Rank a building's claim to a corner; the smaller one wins.
+
+    A building that holds a corner already, or that is alone on its side and nearer in
+    lot to the other corner, stands back, unless its front is as long as the whole side.
+    Then the wider street counts, for corner lots have their address on the avenue;
+    then the side with fewer fronts.
+    """
+    own = sides[side]
+    alone = len(own) == 1 and not _whole_side(sides, side)
+    other = sides[(side - 1) % len(sides) if at_end else (side + 1) % len(sides)]
+    near = sides[(side + 1) % len(sides) if at_end else (side - 1) % len(sides)]
+    elsewhere = (
+        alone
+        and bool(near and other)
+        and _lots_apart(piece, other[-1 if at_end else 0])
+        < _lots_apart(piece, near[0 if at_end else -1])
+    )
+    return (
+        alone and held[piece.building_id] > 0,
+        elsewhere,
+        -street_width(piece.street),
+        len(own),
+    )
+
+
+def _whole_side(sides: Sequence[Sequence[Piece]], side: int) -> bool:
+    """Tell whether a side's one front is about as long as the opposite side."""
+    if len(sides) != 4 or not sides[side]:
+        return False
+    opposite_m = sum(piece.width_m for piece in sides[(side + 2) % 4])
+    return sides[side][0].width_m > WHOLE * opposite_m > 0
+
+
+def _lots_apart(a: Piece, b: Piece) -> float:
+    """Tell how far two lots are apart by their numbers, without regard to letters."""
+    numbers = [int(one.lot) for one in (a, b) if one.lot.isdecimal()]
+    return float(abs(numbers[0] - numbers[1])) if len(numbers) == 2 else 0.0
 
 
 def _round_the_corner(piece: Piece) -> Piece:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from nostalgin_core import block, facts
+from nostalgin_core import address, block, facts
 from nostalgin_core.cuboid import Shown
 from nostalgin_core.records import Front
 from tests.core import sample_block as sample
@@ -54,7 +54,7 @@ def test_only_the_street_with_odd_and_even_numbers_cuts() -> None:
 def test_rings_face_each_other_over_the_street_that_cuts_them() -> None:
     west, east = shapes(block.block("9", [*WEST, *EAST], [], {}))
     assert not west.intersects(east)
-    assert west.distance(east) == pytest.approx(block.AVENUE_M, rel=0.1)
+    assert west.distance(east) == pytest.approx(address.AVENUE_M, rel=0.1)
     assert east.centroid.x > west.centroid.x
 
 

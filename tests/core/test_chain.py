@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from nostalgin_core.chain import Footprint, Ring, chain
+from nostalgin_core.pieces import pieces, with_corners
 from nostalgin_core.records import Front
 
 
@@ -201,3 +204,57 @@ def test_a_leaning_side_leans_as_told() -> None:
 def test_an_empty_ring_is_refused() -> None:
     with pytest.raises(ValueError, match="at least one front"):
         chain([])
+
+
+def owners(fronts: list[Front]) -> dict[tuple[int, int], str]:
+    """Tell which lot stands round the corner of each two sides."""
+    found = {}
+    sides = with_corners(pieces(fronts))
+    for here, side in enumerate(sides):
+        there = (here + 1) % len(sides)
+        assert side[-1].building_id == sides[there][0].building_id
+        found[here, there] = side[-1].lot
+    return found
+
+
+def on(street: str, one: Front) -> Front:
+    return replace(one, street=street)
+
+
+def test_an_unclaimed_corner_goes_to_the_lot_on_the_avenue() -> None:
+    fronts = [
+        on("10 Street", front(0, 0, "1", 20.0)),
+        on("First Avenue", front(1, 1, "5", 20.0)),
+        on("First Avenue", front(1, 2, "6", 20.0)),
+        on("First Avenue", front(1, 3, "7", 20.0)),
+        on("11 Street", front(2, 4, "9", 20.0)),
+        on("11 Street", front(2, 5, "10", 20.0)),
+        on("Second Avenue", front(3, 6, "14", 20.0)),
+        on("Second Avenue", front(3, 7, "15", 20.0)),
+    ]
+    assert owners(fronts) == {(0, 1): "5", (1, 2): "7", (2, 3): "14", (3, 0): "15"}
+
+
+def test_a_lot_alone_on_its_side_takes_the_corner_that_its_lot_is_nearer_to() -> None:
+    fronts = [
+        on("10 Street", front(0, 0, "22", 30.0)),
+        on("10 Street", front(0, 1, "29", 30.0)),
+        on("First Avenue", front(1, 2, "36", 25.0)),
+        on("11 Street", front(2, 3, "38", 30.0)),
+        on("11 Street", front(2, 4, "43", 30.0)),
+        on("Second Avenue", front(3, 5, "47", 30.0)),
+        on("Second Avenue", front(3, 6, "11", 30.0)),
+    ]
+    assert owners(fronts) == {(0, 1): "29", (1, 2): "36", (2, 3): "47", (3, 0): "11"}
+
+
+def test_a_lot_as_long_as_its_side_takes_both_corners() -> None:
+    fronts = [
+        on("10 Street", front(0, 0, "22", 60.0)),
+        on("First Avenue", front(1, 1, "36", 58.0)),
+        on("11 Street", front(2, 2, "38", 60.0)),
+        on("Second Avenue", front(3, 3, "47", 30.0)),
+        on("Second Avenue", front(3, 4, "49", 30.0)),
+    ]
+    got = owners(fronts)
+    assert got[0, 1] == got[1, 2] == "36"

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from nostalgin_core import block, city
+from nostalgin_core import address, block, city
 from nostalgin_core.city import Move, Plot
 from nostalgin_core.records import Front
 
@@ -58,7 +58,7 @@ def test_the_first_block_stays_where_it_is() -> None:
 def test_neighbours_face_each_other_over_their_street() -> None:
     plots = [plot("10", 1), plot("11", 21)]
     south, north = grounds(plots, city.places(plots))
-    assert south.distance(north) == pytest.approx(block.STREET_M)
+    assert south.distance(north) == pytest.approx(address.STREET_M)
     assert north.centroid.y > south.centroid.y
 
 
