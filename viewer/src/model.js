@@ -23,9 +23,8 @@ export function united(scene, assumed) {
   const geometries = parts.map((part) => {
     const geometry = part.geometry.clone();
     geometry.applyMatrix4(inverse.clone().multiply(part.matrixWorld));
-    const feature = geometry.attributes._feature_id_0.getX(0);
-    const flags = new Float32Array(geometry.attributes.position.count).fill(assumed(ids[feature]) ? 1 : 0);
-    geometry.setAttribute('assumed', new BufferAttribute(flags, 1));
+    const flags = features(part).map((feature) => (assumed(ids[feature]) ? 1 : 0));
+    geometry.setAttribute('assumed', new BufferAttribute(new Float32Array(flags), 1));
     return geometry;
   });
   const mesh = new Mesh(mergeGeometries(geometries), first.material);
@@ -36,12 +35,16 @@ export function united(scene, assumed) {
   return mesh;
 }
 
+/** The feature number of each vertex. */
+function features({ geometry: { attributes: { _feature_id_0: numbers } } }) {
+  return Array.from({ length: numbers.count }, (_, i) => numbers.getX(i));
+}
+
 /** The building id of each feature number, from the model's property table. */
 function idsOf(mesh, parts) {
   const metadata = mesh.userData.structuralMetadata;
-  const features = parts.map((part) => part.geometry.attributes._feature_id_0.getX(0));
   const ids = [];
-  for (const feature of features) {
+  for (const feature of new Set(parts.flatMap(features))) {
     const row = metadata?.getPropertyTableData(0, feature) ?? {};
     ids[feature] = String(row.id ?? row.building_id ?? feature);
   }
