@@ -2,7 +2,8 @@
 
 import json
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -30,7 +31,7 @@ def publish(store: Store, run: str, versions: Versions, rows: Sequence[Row]) -> 
         site.assemble(
             folder / SITE,
             blocks=models(store, run, blocks, rows),
-            photos=thumbnails(store, run, versions),
+            photos=Thumbnails(store, run, versions),
             title=folder.resolve().name,
         )
     store.write_bytes(CURRENT, f"{run}\n".encode())
@@ -59,7 +60,7 @@ def models(
         made.append(
             site.BlockModel(
                 name=row["block"],
-                glb=store.read_table(row["model"], ["glb"]).to_pylist()[0]["glb"],
+                glb=partial(cell, store, row["model"], "glb"),
                 record=record,
                 low_m=tuple(row["low_m"]),
                 high_m=tuple(row["high_m"]),
@@ -118,11 +119,37 @@ def reasons(
     return told
 
 
-def thumbnails(store: Store, run: str, versions: Versions) -> dict[str, bytes]:
-    """Read the small pictures of all photos that could be read, by key."""
-    found = {}
-    for row in runs.read_table(store, run, "photos"):
-        path = versions.path("thumbnail", versions.thumbnail_key(row["sha256"]))
-        if store.verdict(path) is True:
-            found[row["key"]] = store.read_table(path).to_pylist()[0]["picture"]
-    return found
+def cell(store: Store, path: str, column: str) -> bytes:
+    """Read the one cell that an artifact holds."""
+    return store.read_table(path, [column]).to_pylist()[0][column]
+
+
+class Thumbnails(Mapping[str, bytes]):
+    """The small pictures of all photos that could be read, by key, read one by one."""
+
+    def __init__(self, store: Store, run: str, versions: Versions) -> None:
+        """Find out which there are."""
+        self._store = store
+        self._paths = {
+            row["key"]: versions.path(
+                "thumbnail", versions.thumbnail_key(row["sha256"])
+            )
+            for row in runs.read_table(store, run, "photos")
+        }
+        self._paths = {
+            key: path
+            for key, path in sorted(self._paths.items())
+            if store.verdict(path) is True
+        }
+
+    def __getitem__(self, key: str) -> bytes:
+        """Read one."""
+        return cell(self._store, self._paths[key], "picture")
+
+    def __iter__(self) -> Iterator[str]:
+        """Name all."""
+        return iter(self._paths)
+
+    def __len__(self) -> int:
+        """Count them."""
+        return len(self._paths)

@@ -17,7 +17,7 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -51,7 +51,7 @@ class BlockModel:
     """
 
     name: str
-    glb: bytes
+    glb: bytes | Callable[[], bytes]  # or how to read them, one block at a time
     record: Mapping[str, Any]
     low_m: tuple[float, float, float]  # the model's bounds: east, north, up
     high_m: tuple[float, float, float]
@@ -86,10 +86,7 @@ def assemble(
     index = viewer / "index.html"
     if not index.is_file():
         raise ViewerMissingError
-    models = {
-        f"blocks/{safe(one.name)}-{hashlib.sha256(one.glb).hexdigest()[:8]}.glb": one
-        for one in blocks
-    }
+    models = {f"blocks/{safe(one.name)}-{digest(one)}.glb": one for one in blocks}
     files = {key: f"photos/{safe(key)}{suffix(data)}" for key, data in photos.items()}
     tiles = [
         tileset.Tile(uri, one.low_m, one.high_m, one.origin_m, one.place, one.turn_rad)
@@ -106,7 +103,7 @@ def assemble(
     for key, data in photos.items():
         site.write(files[key], data)
     for uri, one in models.items():
-        site.write(uri, one.glb)
+        site.write(uri, content(one))
     site.write("index.html", index.read_bytes())
     site.write("site.json", _text(record))
     site.write("tileset.json", _text(tileset.tileset(tiles, place=place)))
@@ -120,6 +117,16 @@ def thumbnail(image: Gray, *, longest_px: int = THUMBNAIL_PX) -> bytes:
     file = io.BytesIO()
     picture.save(file, "WEBP", quality=80, method=4)
     return file.getvalue()
+
+
+def digest(block: BlockModel) -> str:
+    """Give a model's file name what changes with its content."""
+    return hashlib.sha256(content(block)).hexdigest()[:8]
+
+
+def content(block: BlockModel) -> bytes:
+    """Give a block's model, which may have to be read first."""
+    return block.glb() if callable(block.glb) else block.glb
 
 
 def safe(name: str) -> str:
