@@ -1,8 +1,7 @@
-"""Holes to learn on: free-form strokes, and people and cars standing at the foot.
+"""Holes to learn on: people, cars and posts standing at the foot of a front.
 
-Free-form strokes follow the algorithm of the free-form paper (appendix): a brush that
-turns by alternating angles, with round joints. Silhouettes are the labelled occluders
-themselves, each scaled to the front and set on its lowest row.
+The silhouettes are the labelled occluders themselves, each scaled to the front and set
+on its lowest row. Free-form strokes are drawn by `nostalgin_core.free_form`.
 """
 
 import json
@@ -16,37 +15,6 @@ from nostalgin_core.arrays import Mask, Points
 Outline = Points  # unit height, feet at y = 0, upwards negative, centred on x = 0
 
 STANDING = ("person", "vehicle", "placard", "other")
-
-
-def free_form(shape: tuple[int, int], *, rng: np.random.Generator) -> Mask:
-    """Draw one brush stroke of several joints."""
-    h, w = shape
-    size = min(shape)
-    canvas = np.zeros(shape, np.uint8)
-    x, y = rng.uniform(0, w), rng.uniform(0, h)
-    width = rng.uniform(0.06, 0.22) * size
-    mean = rng.uniform(0, 2 * np.pi)
-    for vertex in range(rng.integers(3, 9)):
-        angle = mean + rng.uniform(-0.5, 0.5) + (np.pi if vertex % 2 else 0)
-        angle += rng.uniform(-0.9, 0.9)
-        length = rng.uniform(0.1, 0.5) * size
-        to_x = float(np.clip(x + length * np.cos(angle), 0, w - 1))
-        to_y = float(np.clip(y + length * np.sin(angle), 0, h - 1))
-        joint = (round(to_x), round(to_y))
-        cv2.line(canvas, (round(x), round(y)), joint, 1, max(round(width), 2))
-        cv2.circle(canvas, joint, max(round(width / 2), 1), 1, -1)
-        x, y = to_x, to_y
-    return canvas > 0
-
-
-def free_form_share(
-    shape: tuple[int, int], *, least: float, rng: np.random.Generator
-) -> Mask:
-    """Draw strokes until at least a share of the picture is covered."""
-    hole = np.zeros(shape, bool)
-    while hole.mean() < least:
-        hole |= free_form(shape, rng=rng)
-    return hole
 
 
 def outlines(data: Path) -> tuple[Outline, ...]:

@@ -22,8 +22,9 @@ from torch import Tensor
 
 from export.inpainter import Critic, Generator
 from export.inpainting_data import Sheet, sheets
-from export.masks import Outline, free_form_share, outlines, standing
+from export.masks import Outline, outlines, standing
 from nostalgin_core.arrays import Gray, Mask
+from nostalgin_core.free_form import free_form_share
 from nostalgin_core.repetition import guess
 
 
