@@ -14,7 +14,8 @@ from nostalgin_core.records import Assignment, Front, Rejection, Seen
 
 ENOUGH_PX = 900.0  # visible pixels: a facade of 30 by 30 tells hardly a window
 NARROWEST, WIDEST = 0.04, 12.0  # width / height of a front
-SURE = 0.5  # a target score from which a second facade counts as the building's
+SURE = 0.25  # a target score below which no facade counts for a corner
+SECOND = 0.6  # of the best target score, which a corner's second facade must reach
 HALF_AREA_PX = 20_000.0  # a facade of this many pixels gets half the credit for size
 HALF_SPREAD = 0.15  # so does one whose aspect is known to 15 %
 
@@ -115,7 +116,10 @@ def _fault(one: Seen) -> str:
 
 def _sure(seen: Sequence[Seen]) -> list[Seen]:
     """List the targets that count, the best first."""
-    sure = [one for one in seen if one.target and one.target_score >= SURE]
+    targets = [one for one in seen if one.target]
+    best = max((one.target_score for one in targets), default=0.0)
+    least = max(SURE, SECOND * best)
+    sure = [one for one in targets if one.target_score >= least]
     return sorted(sure, key=lambda one: (-score(one), one.facade))
 
 

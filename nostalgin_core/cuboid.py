@@ -77,9 +77,10 @@ def cuboid(
 ) -> Building:
     """Raise a building and hang its elevations.
 
-    A front wears its best elevation. A front without one wears a copy of the
-    building's best (COPIED); so do the other walls if `copied` (the paper tiles what it
-    has round all four sides), else they are plain (ASSUMED), as party walls mostly are.
+    A front wears its best elevation. Where a wall stands on a street and no photograph
+    shows it, it wears a copy of the building's best (COPIED); so do the other walls if
+    `copied` (the paper tiles what it has round all four sides), else they are plain
+    (ASSUMED), as party walls mostly are.
     """
     height_m = height(footprint, shown)
     best = {
@@ -94,7 +95,7 @@ def cuboid(
         texture, code = None, evidence.ASSUMED
         if front_id in best:
             texture, code = best[front_id].texture, None
-        elif spare is not None and (front_id is not None or copied):
+        elif spare is not None and (copied or front_id or index <= footprint.turns):
             texture, code = spare.texture, evidence.COPIED
         walls.append(
             Wall(

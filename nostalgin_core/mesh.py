@@ -5,14 +5,18 @@ roofs and floors show a flat patch, lighter or darker by the way they face. A fa
 transparent where the photograph shows no front: above a stepped roof, or where another
 building stands before it. So the roof lies at the eaves, where the front is closed from
 end to end, and the front rises above it as a parapet; below the eaves a plain wall
-stands right behind the facade, so that nobody looks into an empty box.
+stands right behind the facade, so that nobody looks into an empty box. A copy of a
+facade is repeated along a longer wall, not stretched.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
 
+from nostalgin_core import evidence
 from nostalgin_core.arrays import Corners
 from nostalgin_core.atlas import Atlas
 from nostalgin_core.records import Box, Building, Mesh, Wall
@@ -35,8 +39,10 @@ def building(building: Building, atlas: Atlas, *, number: int = 0) -> Mesh:
     boxes: list[Box] = []
     for wall in building.walls:
         box = _box(wall, atlas)
-        quads.append(_standing(wall, building.height_m if wall.texture else roof_m))
-        boxes.append(box)
+        top_m = building.height_m if wall.texture else roof_m
+        for part in _bays(wall, box, building.height_m):
+            quads.append(_standing(part, top_m))
+            boxes.append(box)
         if wall.texture and gapped(box, atlas):
             quads.append(_standing(wall, roof_m, inset_m=BACKING_M))
             boxes.append(_patch(wall, atlas))
@@ -89,6 +95,18 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
         ),
         features=np.concatenate([mesh.features for mesh in meshes]),
     )
+
+
+def _bays(wall: Wall, box: Box, height_m: float) -> list[Wall]:
+    """Cut a wall that wears a copy into as many parts as the copy goes along it."""
+    if wall.evidence != evidence.COPIED:
+        return [wall]
+    start, end = np.array(wall.start_m), np.array(wall.end_m)
+    worn_m = height_m * (box.x1 - box.x0) / (box.y1 - box.y0)
+    count = max(1, round(float(np.hypot(*(end - start))) / worn_m))
+    marks = [start + (end - start) * n / count for n in range(count + 1)]
+    ends = [(float(mark[0]), float(mark[1])) for mark in marks]
+    return [replace(wall, start_m=a, end_m=b) for a, b in pairwise(ends)]
 
 
 def _standing(wall: Wall, height_m: float, *, inset_m: float = 0.0) -> Quad3:

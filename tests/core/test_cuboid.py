@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -86,3 +88,13 @@ def test_walls_follow_the_footprint_round() -> None:
 def test_with_equal_weights_it_is_the_median(values: list[float]) -> None:
     found = cuboid.weighted_median(values, [1.0] * len(values))
     assert found == pytest.approx(float(np.median(values)))
+
+
+def test_a_corner_wall_on_a_street_wears_a_copy_though_it_is_no_known_front() -> None:
+    silent = replace(CORNER, front_ids=("f", None, None, None))
+    walls = cuboid.cuboid(silent, {"f": [shown(0.5)]}).walls
+    assert [wall.evidence for wall in walls[:3]] == [
+        None,
+        evidence.COPIED,
+        evidence.ASSUMED,
+    ]

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -85,3 +87,15 @@ def test_joined_meshes_keep_their_numbers_and_their_triangles() -> None:
         whole.positions_m[whole.triangles[-1]],
         parts[2].positions_m[parts[2].triangles[-1]],
     )
+
+
+def test_a_copy_is_repeated_along_a_longer_wall() -> None:
+    image = np.full((120, 50), 128, np.uint8)
+    one = sample.plain(image)
+    sheet = atlas.build({("p", 0, evidence.COPIED): one})
+    plain = building()
+    copy = replace(plain.walls[0], texture=("p", 0), evidence=evidence.COPIED)
+    copied = replace(plain, walls=(copy, *plain.walls[1:]))
+    made = mesh.building(copied, sheet)
+    fronts = made.positions_m[np.abs(made.normals[:, 1] + 1) < 1e-9]
+    np.testing.assert_allclose(np.unique(fronts[:, 0]), [0, 5, 10])
