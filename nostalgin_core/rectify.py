@@ -1,189 +1,57 @@
 """Straighten every front of a photo into an elevation, or say why it can't be done.
 
 Lines, vanishing points, camera, quad, aspect ratio, homography, warp: section 3.3. All
-fronts of a photo share the camera and the way up (`upright`).
+fronts of a photo share the camera and the way up (`orient`, `upright`).
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import camera, homography, lines, quad, upright, vanish, warp
-from nostalgin_core.arrays import Corners, Lines, Mask, Matrix3, Points
+from nostalgin_core import (
+    camera,
+    evidence,
+    homography,
+    orient,
+    quad,
+    upright,
+    warp,
+)
+from nostalgin_core.arrays import Corners, Matrix3, Points
 from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
 
 STAGE = "rectify"
-MARGIN_PX = 2  # an outline's own lines lie just outside as often as inside
-LEAST_INSIDE = 0.5  # of a line
-HIDDEN = 0.5  # alpha up to which something else is what the camera saw
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
-LEAST_LINES = 3.0  # whose weights support a front's horizontal
-BORROWED = 0.85  # of its own votes are enough for a direction that the street has
-WELL_KNOWN_DEG = 1.5  # the azimuth of a front that others may borrow from
 MOST_SKEWED = 1e9  # condition of a plane seen edge on
 ASPECTS = (0.05, 20.0)
+MOST_UNSURE_DEG = 8.0  # of the horizontal vanishing point: beyond, it is a guess
+MOST_BEYOND = 0.7  # of an elevation outside the frame
 TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread to this
-BOTH = "two vanishing points"
-UPRIGHT = "upright camera assumed"
 
 Parameters = Float[np.ndarray, " p"]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Signal:
-    """The lines that speak for one front, in units."""
-
-    strict: Float[np.ndarray, "_ 4"]
-    loose: Lines
-    omega: Float[np.ndarray, " n"]
-    length_px: Float[np.ndarray, " n"]
-
-    @property
-    def weights(self) -> Float[np.ndarray, " n"]:
-        """Weigh the loose lines' votes: length times the share inside the front."""
-        return self.omega * self.length_px
 
 
 def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
     """Make one elevation, or one rejection, of each facade, in their order."""
     if not matted.facades:
         return ()
-    clear = [unhidden(facade) for facade in matted.facades]
-    anywhere = np.any(clear, axis=0)
-    found = detect(photo, anywhere & _framed(photo))
-    signals = [signal(photo, found, mask) for mask in clear]
-    world, seen, method = orient(signals, vertical(signal(photo, found, anywhere)))
-    results = []
-    rank = 0
-    for facade, has in zip(matted.facades, seen, strict=True):
-        if not has or world is None:
-            results.append(_rejected(photo, facade, "too few lines"))
-            continue
-        results.append(elevation(photo, facade, world, rank, method))
-        rank += 1
-    return tuple(results)
-
-
-def _framed(photo: Photo) -> Mask:
-    """Tell where the exposed frame is, without its own edge, which is a long line."""
-    x0, y0, x1, y1 = photo.frame
-    inner = np.zeros(photo.image.shape, bool)
-    edge = MARGIN_PX + 2
-    inner[y0 + edge : y1 - edge, x0 + edge : x1 - edge] = True
-    return inner
-
-
-def unhidden(facade: Facade) -> Mask:
-    """Tell where a line may speak for a front: on it and its outline, off occluders.
-
-    The outline of what stands before the front lies as close to the front as the
-    front's own, so holes grow by the margin and take it away.
-    """
-    hole = facade.amodal & (facade.alpha <= HIDDEN)
-    return vanish.grown(facade.amodal, MARGIN_PX) & ~vanish.grown(hole, MARGIN_PX)
-
-
-def detect(
-    photo: Photo, where: Mask
-) -> tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]]:
-    """Find the strict and the loose lines inside `where`, in photo pixels."""
-    strict, loose = lines.detect(photo.image, lines.STRICT, lines.LOOSE, where=where)
-    return strict, loose
-
-
-def signal(
-    photo: Photo,
-    found: tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]],
-    mask: Mask,
-) -> Signal:
-    """Pick the lines of a front: those with at least half their length in its mask."""
-    strict, loose = found
-    strict = strict[vanish.inside(strict, mask) >= LEAST_INSIDE]
-    omega = vanish.inside(loose, mask)
-    loose, omega = loose[omega >= LEAST_INSIDE], omega[omega >= LEAST_INSIDE]
-    where = camera.centre(photo.frame), camera.prior_focal_px(photo.frame)
-    return Signal(
-        vanish.to_unit(strict, *where),
-        vanish.to_unit(loose, *where),
-        omega,
-        vanish.lengths(loose),
+    oriented = orient.orient(photo, matted.facades)
+    return tuple(
+        _rejected(photo, facade, "too few lines")
+        if method is None
+        else elevation(photo, facade, oriented.world, rank, method)
+        for rank, (facade, method) in enumerate(
+            zip(matted.facades, oriented.methods, strict=True)
+        )
     )
-
-
-def vertical(everywhere: Signal) -> tuple[Float[np.ndarray, "3"], float]:
-    """Find the vertical vanishing point that all fronts share, in units."""
-    return vanish.best_vertical(everywhere.strict, everywhere.loose, everywhere.weights)
-
-
-def orient(
-    signals: list[Signal], vertical: tuple[Float[np.ndarray, "3"], float]
-) -> tuple[upright.Upright | None, list[bool], str]:
-    """Fit the upright world to all fronts that have a horizontal direction.
-
-    Each front first chooses for itself. Once the camera is known, each may choose
-    again, between its own direction, those of the other fronts, and the ones square to
-    them; if any does, all are fitted again.
-
-    Returns: the world, which fronts are part of it, and how it was found.
-    """
-    up, share = vertical
-    chosen = [vanish.best_horizontal(up, s.strict, s.loose, s.weights) for s in signals]
-    seen = [c is not None for c in chosen]
-    kept = [s for s, has in zip(signals, seen, strict=True) if has]
-    if not kept:
-        return None, seen, BOTH
-    start = upright.start(up, np.array([c for c in chosen if c is not None]))
-    world = _fit(start, kept)
-    again = _choose_again(world, kept)
-    if not np.array_equal(again, world.parameters):
-        world = _fit(again, kept)
-    return world, seen, BOTH if share > 0 else UPRIGHT
-
-
-def _fit(parameters: Parameters, signals: list[Signal]) -> upright.Upright:
-    """Fit the world to the lines of all fronts, each open to up and to its own."""
-    front = np.repeat(np.arange(len(signals)), [len(s.loose) for s in signals])
-    open_to = np.arange(len(signals) + 1) == front[:, None] + 1
-    open_to[:, 0] = True
-    return upright.fit(
-        parameters,
-        np.vstack([s.loose for s in signals]),
-        open_to,
-        np.concatenate([s.omega for s in signals]),
-        np.concatenate([s.length_px for s in signals]),
-    )
-
-
-def _choose_again(world: upright.Upright, signals: list[Signal]) -> Parameters:
-    """Let each front vote between its own azimuth and those of better known fronts.
-
-    A borrowed azimuth needs only `BORROWED` of the own one's votes, since the street
-    is evidence as well.
-    """
-    parameters = world.parameters.copy()
-    theta = world.parameters[3:]
-    sd = np.sqrt(np.diag(world.covariance))[3:]
-    for i, s in enumerate(signals):
-        better = theta[(sd < sd[i]) & (sd < np.radians(WELL_KNOWN_DEG))]
-        if not len(better):
-            continue
-        azimuths = np.concatenate([theta[i : i + 1], better, better + np.pi / 2])
-        trial = np.concatenate([world.parameters[:3], azimuths])
-        points = upright.vanishing_points(trial)
-        away = vanish.distance_deg(points[:1], s.loose)[0] > vanish.VERTICAL_DEG
-        votes = vanish.vote(points[1:], s.loose[away], s.weights[away])
-        votes[0] *= BORROWED
-        parameters[3 + i] = azimuths[votes.argmax()]
-    return parameters
 
 
 def elevation(
     photo: Photo, facade: Facade, world: upright.Upright, rank: int, method: str
 ) -> Elevation | Rejection:
     """Straighten one front with the world's camera."""
-    if world.support[rank + 1] < LEAST_LINES:
-        return _rejected(photo, facade, "too few lines")
+    sd_deg = upright.directions_sd_deg(world, rank)
+    if sd_deg[0] > MOST_UNSURE_DEG:
+        return _rejected(photo, facade, "direction unsure", f"{sd_deg[0]:.1f} degrees")
     points = quad.hull(facade.amodal)
     if len(points) < 3 or np.min(np.ptp(points, axis=0)) < LEAST_SIDE_PX:
         return _rejected(photo, facade, "facade too small")
@@ -203,6 +71,9 @@ def elevation(
         shape,
         frame=photo.frame,
     )
+    beyond = float(np.mean(rests_on == evidence.BEYOND_FRAME))
+    if beyond > MOST_BEYOND:
+        return _rejected(photo, facade, "mostly beyond the frame", f"{beyond:.0%}")
     prior = camera.prior_focal_px(photo.frame)
     told = world.covariance[0, 0] < (TOLD * upright.LOG_FOCAL[1]) ** 2
     points_px = _to_photo(photo, upright.vanishing_points(world.parameters))
@@ -216,7 +87,7 @@ def elevation(
         vanishing_points=points_px[[rank + 1, 0]],
         focal_px=world.focal * prior if told else None,
         aspect=aspect,
-        vanishing_sd_deg=upright.directions_sd_deg(world, rank),
+        vanishing_sd_deg=sd_deg,
         focal_sd_px=world.focal * prior * float(np.sqrt(world.covariance[0, 0]))
         if told
         else None,

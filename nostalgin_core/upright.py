@@ -144,7 +144,7 @@ def fit(
             gradient[:3] += (p[:3] - prior_mean) / prior_sd**2
             normal[range(3, 3 + fronts), range(3, 3 + fronts)] += 1e-3
             p = p - np.clip(np.linalg.solve(normal, gradient), -0.2, 0.2)
-    support = np.bincount(axis_in, omega_in, minlength=fronts + 1)
+    support = np.bincount(axis_in, omega_in, minlength=fronts + 1).astype(np.float64)
     independent = normal.copy()
     scaled = jacobian.T @ (jacobian * weight[:, None])
     independent += scaled * (1 / (TOGETHER * spread) - 1)
