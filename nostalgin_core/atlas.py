@@ -69,10 +69,11 @@ def bled(image: Gray, kept: Mask) -> Gray:
     """
     if kept.all() or not kept.any():
         return image
-    rows, columns = ndimage.distance_transform_edt(
-        ~kept, return_distances=False, return_indices=True
+    nearest = np.zeros((2, *kept.shape), np.int32)
+    ndimage.distance_transform_edt(
+        ~kept, return_distances=False, return_indices=True, indices=nearest
     )
-    return image[rows, columns]
+    return image[nearest[0], nearest[1]]
 
 
 def scaled_codes(

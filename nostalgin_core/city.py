@@ -210,7 +210,8 @@ def _beside(one: Plot, standing: Sequence[Plot]) -> Move:
 
 def _clear(one: Plot, standing: Sequence[Plot]) -> bool:
     return not any(
-        _ground(one).intersection(_ground(other)).area > 1.0 for other in standing
+        shapely.area(shapely.intersection(_ground(one), _ground(other))) > 1.0
+        for other in standing
     )
 
 

@@ -89,7 +89,7 @@ def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
             continue
         held[owner.building_id] += 1
         if owner is last:
-            whole[there].insert(0, _round_the_corner(last))
+            whole[there].insert(0, _round_the_corner(owner))
         else:
             whole[here].append(_round_the_corner(owner))
     return whole
