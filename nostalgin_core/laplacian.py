@@ -23,6 +23,7 @@ pixels. LAPACK's banded Cholesky then solves it exactly, several times faster th
 general sparse factorisation; that one is left for bands that branch too much.
 """
 
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import cv2
@@ -36,8 +37,9 @@ from nostalgin_core.arrays import Alpha, Gray, Mask
 from nostalgin_core.trimap import BACKGROUND, FOREGROUND, Trimap
 
 EPSILON: Final = 1e-7  # Levin's own: squared gray levels, where white is 1
-ENTRIES: Final = 24_000_000  # of one factor: 192 MB
+ENTRIES: Final = 8_000_000  # of one factor: 64 MB
 WIDEST: Final = 400  # from this matrix bandwidth on, a sparse factorisation is faster
+_OVERLAP_PX: Final = 8  # of parts that are solved one after the other
 _PAD: Final = 2  # how far a window that holds a pixel reaches from it
 _N: Final = 9
 
@@ -75,7 +77,8 @@ def alpha(
 
     A band whose factor has more than `entries` numbers is solved at half the size
     first. There, alpha is brought to full size by its own local affine model, and
-    solved again only where it is neither 0 nor 1: coarse to fine, in bounded memory.
+    solved again, part by part, where it is neither 0 nor 1: bounded memory, and for
+    crisp outlines little work.
 
     Args:
         image: What the camera saw.
@@ -100,21 +103,55 @@ def _solve(
 ) -> _Light:
     unknown = (trimap != BACKGROUND) & (trimap != FOREGROUND)
     result = (trimap == FOREGROUND).astype(np.float32)
-    numbering = order(unknown)
-    if numbering.entries > entries:
+    if order(unknown).entries > entries:
         guess = _from_half(light, trimap, prior, epsilon, entries)
+        unsettled = ((guess > 0.002) & (guess < 0.998)).astype(np.uint8)
+        result[unknown] = np.round(guess[unknown])
+        unknown &= cv2.dilate(unsettled, np.ones((5, 5), np.uint8)) > 0
         result[unknown] = guess[unknown]
-        unsettled = ((guess > 0.02) & (guess < 0.98)).astype(np.uint8)
-        unknown &= cv2.dilate(unsettled, np.ones((3, 3), np.uint8)) > 0
-        numbering = order(unknown)
-        if numbering.entries > entries:
-            return result
-        result[~unknown] = np.round(result[~unknown])
-    if len(numbering.ranks):
-        equations = system(light, unknown, result, prior=prior, epsilon=epsilon)
-        solver = banded_solve if numbering.reach < WIDEST else sparse_solve
-        result[unknown] = solver(equations, numbering.ranks)
+    for part in _parts(unknown, entries):
+        result[part] = _exactly(light, part, result, prior, epsilon)
     return result
+
+
+def _parts(unknown: Mask, entries: int) -> Iterator[Mask]:
+    """Split a band until each part's factor is small enough, with some overlap.
+
+    The parts are solved one after the other, each with the others' alpha as it is: what
+    the coarse solution missed is local.
+    """
+    if order(unknown).entries <= entries:
+        yield unknown
+        return
+    places = np.nonzero(unknown)
+    axis = int(np.argmax([np.ptp(axis) for axis in places]))
+    middle = int(np.median(places[axis]))
+    for side in (slice(middle + _OVERLAP_PX), slice(middle - _OVERLAP_PX, None)):
+        half = np.zeros_like(unknown)
+        cut = (side, slice(None)) if axis == 0 else (slice(None), side)
+        half[cut] = unknown[cut]
+        yield from _parts(half, entries)
+
+
+def _exactly(
+    light: _Light,
+    unknown: Mask,
+    known: _Light,
+    prior: Belief | None,
+    epsilon: float,
+) -> Float[np.ndarray, " n"]:
+    """Solve for the unknown pixels at once."""
+    if not unknown.any():
+        return np.empty(0)
+    y, x = (np.flatnonzero(unknown.any(axis=axis)) for axis in (1, 0))
+    part = tuple(slice(max(0, a[0] - _PAD), a[-1] + _PAD + 1) for a in (y, x))
+    here = prior and Belief(prior.alpha[part], prior.weight)
+    equations = system(
+        light[part], unknown[part], known[part], prior=here, epsilon=epsilon
+    )
+    numbering = order(unknown[part])
+    solver = banded_solve if numbering.reach < WIDEST else sparse_solve
+    return solver(equations, numbering.ranks)
 
 
 def system(

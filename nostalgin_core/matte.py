@@ -33,7 +33,6 @@ from nostalgin_core.trimap import (
 
 EPSILON: Final = 1e-5  # film grain has a standard deviation of 0.003 to 0.01
 BELIEF: Final = 0.02  # in the network, where the image shows no edge
-ENTRIES: Final = 6_000_000  # 48 MB a factor: outlines need no finer solution
 _MARGIN_PX: Final = 4  # round a band: a window, and the known pixels beside it
 
 _Soft = Float32[np.ndarray, "h w"]
@@ -104,7 +103,7 @@ def soft(
     part = _around(band)
     prior = Belief(likely[part], belief)
     result[part] = laplacian.alpha(
-        image[part], known[part], prior=prior, epsilon=epsilon, entries=ENTRIES
+        image[part], known[part], prior=prior, epsilon=epsilon
     )
     return result
 
