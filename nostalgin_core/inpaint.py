@@ -10,10 +10,11 @@ The hole is first filled by a guess, made of what repeats on the front
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import cv2
 import numpy as np
-from jaxtyping import Float32, UInt8
+from jaxtyping import Bool, Float32, Shaped, UInt8
 
 from nostalgin_core import evidence
 from nostalgin_core.arrays import EvidenceMap, Gray, Mask
@@ -24,8 +25,12 @@ from nostalgin_core.slices import CHUNK_PX, CONTEXT_PX, Slice, share, slices
 Network = Callable[..., tuple[Float32[np.ndarray, "1 1 h w"], ...]]
 """Given image, hole and guess (images from -1 to 1), answer with the filled image."""
 
+Smaller = UInt8[np.ndarray, "h2 w2"]
+SmallerMask = Bool[np.ndarray, "h2 w2"]
+
 MULTIPLE = 8  # the network's sizes
-GUESS_PX = 2_000_000  # larger images are guessed at this size, to bound the memory
+GUESSED_PX = 2_000_000  # larger images are guessed at this size, to bound the memory
+LOOKED_PX = 250_000  # and the network looks at them at this one
 HALO_PX = 3  # a soft edge this near the hole is mixed with what hides the front
 
 
@@ -45,23 +50,32 @@ def unknown(marks: EvidenceMap) -> Mask:
     return hole | soft | (marks == evidence.NOTHING)
 
 
+def _smaller(image: Gray, hidden: Mask, largest: int) -> tuple[Smaller, SmallerMask]:
+    """Shrink an image to at most so many texels, from what is not hidden alone."""
+    h, w = image.shape
+    shrink = (largest / (h * w)) ** 0.5
+    if shrink >= 1:
+        return image, hidden
+    size = (max(1, round(w * shrink)), max(1, round(h * shrink)))
+    seen = (~hidden).astype(np.uint8) * 255
+    part = cv2.resize(seen, size, interpolation=cv2.INTER_AREA)
+    sums = cv2.resize(image & seen, size, interpolation=cv2.INTER_AREA)
+    mean = sums.astype(np.float32) * 255 / np.maximum(part, 1)
+    return _gray(mean), part < 128
+
+
+def _gray(values: Shaped[np.ndarray, "..."]) -> UInt8[np.ndarray, "..."]:
+    """Round to gray levels."""
+    return np.clip(np.round(values), 0, 255).astype(np.uint8)
+
+
 def _guess(image: Gray, hidden: Mask) -> Gray:
     """Guess what is hidden; a large image is guessed at a smaller size."""
-    h, w = image.shape
-    shrink = (GUESS_PX / (h * w)) ** 0.5
-    if shrink >= 1:
-        made = guess(image.astype(np.float32), hidden)
-        return np.clip(np.round(made), 0, 255).astype(np.uint8)
-    size = (max(1, round(w * shrink)), max(1, round(h * shrink)))
-    part = cv2.resize(
-        (~hidden).astype(np.uint8) * 255, size, interpolation=cv2.INTER_AREA
-    )
-    seen = cv2.resize(
-        np.where(hidden, 0, image).astype(np.uint8), size, interpolation=cv2.INTER_AREA
-    )
-    small = seen.astype(np.float32) * 255 / np.maximum(part, 1)
-    made = np.clip(np.round(guess(small, part < 128)), 0, 255).astype(np.uint8)
-    wide = cv2.resize(made, (w, h), interpolation=cv2.INTER_LINEAR)
+    small, unseen = _smaller(image, hidden, GUESSED_PX)
+    made = _gray(guess(small.astype(np.float32), unseen))
+    if made.shape == image.shape:
+        return made
+    wide = cv2.resize(made, image.shape[::-1], interpolation=cv2.INTER_LINEAR)
     return np.where(hidden, wide, image)
 
 
@@ -84,36 +98,34 @@ def _look(
         hole.astype(np.float32)[None, None],
         _scaled(guessed[window], down=down, right=right),
     )[0]
-    gray = (filled[0, 0, :h, :w] + 1) * 127.5
-    return np.clip(np.round(gray), 0, 255).astype(np.uint8)
+    return _gray((filled[0, 0, :h, :w] + 1) * 127.5)
 
 
 def _stitched(
-    image: Gray,
-    hole: Mask,
-    hidden: Mask,
-    pieces: list[Slice],
-    network: Network,
-) -> Gray:
-    """Fill slice by slice; where two overlap, one fades into the other."""
-    guessed = _guess(image, hidden)
-    total = np.zeros(image.shape, np.float32)
+    image: Gray, hidden: Mask, guessed: Gray, pieces: list[Slice], network: Network
+) -> Float32[np.ndarray, "h w"]:
+    """Ask slice by slice what is to be added to the guess; overlaps fade over."""
+    added = np.zeros(image.shape, np.float32)
     for piece in pieces:
         view, cell = piece.view, piece.cell
         made = _look(image, hidden, guessed, view, network)
         inner = np.s_[
             cell.y0 - view.y0 : cell.y1 - view.y0, cell.x0 - view.x0 : cell.x1 - view.x0
         ]
-        total[cell.y0 : cell.y1, cell.x0 : cell.x1] += made[inner] * share(piece)
-    np.copyto(total, image, where=~hole)
-    return np.round(total).astype(np.uint8)
+        outer = np.s_[cell.y0 : cell.y1, cell.x0 : cell.x1]
+        added[outer] += (made[inner].astype(np.float32) - guessed[outer]) * share(piece)
+    return added
 
 
 def whole(elevation: Elevation, network: Network) -> Elevation:
     """Fill an elevation in one look at all of it: memory grows with its area."""
-    h, w = elevation.image.shape
-    everything = Box(0, 0, w, h)
-    return _filled(elevation, network, [Slice(everything, everything, (False,) * 4)])
+
+    def everything(hole: Mask) -> list[Slice]:
+        h, w = hole.shape
+        box = Box(0, 0, w, h)
+        return [Slice(box, box, (False,) * 4)]
+
+    return _filled(elevation, network, everything)
 
 
 def low_memory(
@@ -127,18 +139,35 @@ def low_memory(
 
     Paper, section 4.3: context of 100 px, chunks of at most 400 x 600 px.
     """
-    pieces = slices(holes(elevation.evidence), context=context, chunk=chunk)
-    return _filled(elevation, network, pieces)
+    cut = partial(slices, context=context, chunk=chunk)
+    return _filled(elevation, network, cut)
 
 
-def _filled(elevation: Elevation, network: Network, pieces: list[Slice]) -> Elevation:
-    """Fill the hole of an elevation, if it has one."""
-    hole = holes(elevation.evidence)
+def _filled(
+    elevation: Elevation, network: Network, cut: Callable[[Mask], list[Slice]]
+) -> Elevation:
+    """Fill the hole of an elevation, if it has one.
+
+    The network learnt on fronts of a few hundred texels, so it is shown a larger one
+    at that size, and what it adds to the guess is enlarged.
+    """
+    image, hole = elevation.image, holes(elevation.evidence)
     if not hole.any():
         return elevation
     hidden = unknown(elevation.evidence)
-    image = _stitched(elevation.image, hole, hidden, pieces, network)
-    return replace(elevation, image=image)
+    guessed = _guess(image, hidden)
+    small, unseen = _smaller(image, hidden, LOOKED_PX)
+    if small.shape == image.shape:
+        added = _stitched(image, hidden, guessed, cut(hole), network)
+    else:
+        size = small.shape[::-1]
+        start = cv2.resize(guessed, size, interpolation=cv2.INTER_AREA)
+        part = cv2.resize(hole.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
+        added = _stitched(small, unseen, start, cut(unseen & (part > 0)), network)
+        added = cv2.resize(added, image.shape[::-1], interpolation=cv2.INTER_LINEAR)
+    out = image.copy()
+    out[hole] = _gray(guessed[hole] + added[hole])
+    return replace(elevation, image=out)
 
 
 def inpaint(elevation: Elevation, network: Network) -> Elevation:

@@ -118,7 +118,7 @@ def test_a_large_hole_shows_no_seam_between_slices() -> None:
         return (np.full_like(image, 0.1 * (-1) ** len(seen)),)
 
     made = low_memory(elevation(image, marks), moody).image[60:840, 60:1340]
-    assert len(seen) > 4
+    assert len(seen) >= 4
     assert max(h for h, _ in seen) <= CHUNK_PX[0]
     assert max(w for _, w in seen) <= CHUNK_PX[1]
     steps = [np.abs(np.diff(made.astype(int), axis=axis)).max() for axis in (0, 1)]
