@@ -99,7 +99,7 @@ def furniture(
     """Stand lamps, hydrants and trees along a kerb."""
     start, along, out, long = kerb
     found: list[Sprite | None] = []
-    lamps = np.arange(rng.uniform(3, 20), long, 27.0)
+    lamps = np.arange(rng.uniform(3, 40), long, 34.0)
     posts = rng.uniform(0.0, long, 2)
     trees = rng.uniform(0.0, long, int(rng.random() < 0.12))
     for places, stand in (

@@ -11,7 +11,7 @@ import numpy as np
 
 from nostalgin_core.arrays import Gray
 from nostalgin_core.scenes import shop, trim, wall
-from nostalgin_core.scenes.relief import Board, blank, box, light
+from nostalgin_core.scenes.relief import Board, blank, box, cut, light
 from nostalgin_core.scenes.window import Head, WindowStyle, paint_window
 
 Kind = Literal["rowhouse", "tenement", "loft", "office", "hotel", "taxpayer"]
@@ -132,7 +132,16 @@ def draw(
     storeys(look, rng, board, style, bays=bays, wide=wide, windows=windows)
     ground(rng, board, style, bays=bays, wide=wide, windows=windows)
     crown(look, board, style, stone=stone)
+    seam(board, style)
     return board
+
+
+def seam(board: Board, style: FrontStyle) -> None:
+    """Leave a dark joint to the neighbours, where rain has run for years."""
+    top = style.height_m - style.crown_m
+    for left in (0.0, style.width_m - 0.05):
+        where = cut(board, left, 0.0, left + 0.05, top)
+        board.albedo[where] *= 0.6
 
 
 def rhythm(rng: np.random.Generator, style: FrontStyle) -> tuple[np.ndarray, float]:

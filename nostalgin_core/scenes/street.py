@@ -27,6 +27,7 @@ from nostalgin_core.scenes.front import FrontStyle
 Place = tuple[float, float]  # east, north in metres
 STREET_M = 21.0  # from front to front
 AVENUE_M = 28.0
+TRIES = 6
 STREETS = ("Juniper Street", "Lantern Street", "Tinker Street", "Pewter Street")
 AVENUES = ("Ferry Avenue", "Quince Avenue", "Meridian Avenue", "Harbor Avenue")
 OUTWARD = ((0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0))  # by side
@@ -197,6 +198,7 @@ def lay_out(
                 box,
                 tuple(zip(sides, ranks, streets, numbers, strict=True)),
                 sun=sun,
+                beside=built[-1].walls[0].style if built else None,
             )
         )
         number += int(rng.integers(1, 4))
@@ -260,13 +262,19 @@ def build(
     sides: tuple[tuple[int, int, str, str], ...],
     *,
     sun: tuple[float, float, float],
+    beside: FrontStyle | None,
 ) -> Lot:
     """Put one building on a lot, the same house on each of its sides."""
     west, south, east, north = box
     ends = ((west, south), (east, south), (east, north), (west, north))
     first = sides[0][0]
     spans = (east - west, north - south)
-    look = choose(rng, width_m=spans[first % 2], open_sides=[side[0] for side in sides])
+    look = choose(
+        rng,
+        width_m=spans[first % 2],
+        open_sides=[side[0] for side in sides],
+        beside=beside,
+    )
     walls: list[Wall] = []
     for turn in range(4):
         side = (first + turn) % 4
@@ -298,15 +306,32 @@ def build(
 
 
 def choose(
-    rng: np.random.Generator, *, width_m: float, open_sides: list[int]
+    rng: np.random.Generator,
+    *,
+    width_m: float,
+    open_sides: list[int],
+    beside: FrontStyle | None,
 ) -> FrontStyle:
-    """Choose a house no higher than its street lets a camera see."""
+    """Choose a house no higher than its street lets a camera see.
+
+    A builder wanted his house told from its neighbour: a few tries are made at another
+    tone and another roof line.
+    """
     avenue = any(side % 2 for side in open_sides)
     limit = 25.0 if avenue else 19.0
-    look = fronts.style(rng, width_m=width_m)
-    while look.height_m > limit and look.storeys > 2:
-        look = replace(look, storeys=look.storeys - 1)
+    for _ in range(TRIES):
+        look = fronts.style(rng, width_m=width_m)
+        while look.height_m > limit and look.storeys > 2:
+            look = replace(look, storeys=look.storeys - 1)
+        if beside is None or unlike(look, beside):
+            break
     return look
+
+
+def unlike(one: FrontStyle, other: FrontStyle) -> bool:
+    """Say whether two houses differ in tone and height at a glance."""
+    tone = abs(np.log(one.albedo / other.albedo))
+    return bool(tone > 0.28 and abs(one.height_m - other.height_m) > 0.8)
 
 
 def on_wall(sun: tuple[float, float, float], side: int) -> tuple[float, float, float]:

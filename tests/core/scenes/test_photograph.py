@@ -201,5 +201,5 @@ def test_photos_come_in_any_shape(
 def test_the_album_follows_the_catalogue(town: scenes.Neighbourhood) -> None:
     photos = scenes.album(town, seed=3, shape=(210, 140))
     rows = scenes.catalogue_rows(town)
-    for row, photo in zip(rows[:3], photos, strict=False):
+    for row, photo in zip(rows[:2], photos, strict=False):
         assert photo.name == row["File Name "]
