@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from jaxtyping import Float
 
 from nostalgin_core.cuboid import Texture
 from nostalgin_core.records import Assignment, Block, Building, Front
@@ -43,8 +44,7 @@ def table(
         ],
         "address": [address(some) for some in own],
         "assumed": np.array([one.assumed for one in block.buildings], np.uint8),
-        "height_m": np.array([one.height_m for one in block.buildings], np.float32),
-        "width_m": np.array([_width(one) for one in block.buildings], np.float32),
+        **measures(block),
         "photo": [texture[0] if texture else "" for texture in worn],
         "facade": np.array(
             [texture[1] if texture else -1 for texture in worn], np.int32
@@ -53,6 +53,14 @@ def table(
         "credit": [
             credit_of.get(texture[0], "") if texture else "" for texture in worn
         ],
+    }
+
+
+def measures(block: Block) -> dict[str, Float[np.ndarray, " n"]]:
+    """List each building's height, and its width along its first front."""
+    return {
+        "height_m": np.array([one.height_m for one in block.buildings], np.float32),
+        "width_m": np.array([_width(one) for one in block.buildings], np.float32),
     }
 
 

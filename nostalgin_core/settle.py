@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from nostalgin_core import assign, atlas, block, corner, gltf, mesh, picture
+from nostalgin_core import assign, atlas, block, corner, facts, gltf, mesh, picture
 from nostalgin_core.records import (
     Assignment,
     Block,
@@ -94,8 +94,13 @@ def model(
         meshes,
         colours=picture.colours(pages),
         evidence=picture.evidence_key(pages),
-        table=table,
+        table={
+            **table,
+            "credit": [credit] * len(one.buildings),
+            **facts.measures(one),
+        },
         copyright=credit,
+        extras={"block": one.block, "evidence": picture.legend()},
     )
     return data, mesh.joined([each for _, each in meshes])
 
@@ -103,11 +108,15 @@ def model(
 def table(one: Settled) -> dict[str, list[str]]:
     """Write what a click on a building tells, a row a building."""
     own = [fronts_of(one, b.building_id) for b in one.block.buildings]
+    known = facts.table(one.block, one.fronts, one.assignments)
     return {
         "id": [b.building_id for b in one.block.buildings],
+        "block": list(known["block"]),
         "lot": [fronts[0].lot if fronts else "" for fronts in own],
         "address": ["; ".join(address(front) for front in some) for some in own],
         "assumed": ["yes" if b.assumed else "no" for b in one.block.buildings],
+        "photo": list(known["photo"]),
+        "photos": list(known["photos"]),
     }
 
 

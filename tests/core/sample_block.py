@@ -138,8 +138,12 @@ def assignments(name: str = "1") -> tuple[Assignment, ...]:
 
 @cache
 def sheet(name: str) -> atlas.Atlas:
-    """Draw the block's atlas, every elevation as it is."""
-    return atlas.build(tiles(name), longest_px=512)
+    """Draw the atlas of the block's walls."""
+    made, _ = built(name)
+    drawn = elevations(name)
+    return atlas.build(
+        {key: drawn[key[:2]] for key in atlas.wanted(made)}, longest_px=512
+    )
 
 
 def any_mesh() -> Mesh:

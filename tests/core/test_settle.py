@@ -1,0 +1,96 @@
+import json
+import struct
+
+import numpy as np
+import pytest
+
+from nostalgin_core import settle
+from nostalgin_core.records import Front, Seen
+from nostalgin_core.settle import Settled
+from tests.core import sample_block as sample
+
+
+def seen() -> list[Seen]:
+    """See every painted elevation, the right one of a corner to the right."""
+    return [
+        Seen(
+            photo=photo,
+            facade=facade,
+            target=True,
+            target_score=0.9,
+            score=0.95,
+            aspect=one.aspect,
+            aspect_sd=one.aspect_sd,
+            left_px=100.0 + 200.0 * facade,
+            area_px=50_000.0,
+            photographed=0.9,
+        )
+        for (photo, facade), one in sample.elevations("1").items()
+    ]
+
+
+def named_once() -> list[Front]:
+    """List the fronts as an archive does: one street a lot, the first."""
+    return list({front.lot: front for front in reversed(sample.fronts("1"))}.values())[
+        ::-1
+    ]
+
+
+def candidates(fronts: list[Front]) -> dict[str, list[str]]:
+    photos = {photo for photo, _ in sample.elevations("1")}
+    return {
+        photo: [front.front_id for front in fronts if photo == f"photo-1-{front.lot}"]
+        for photo in photos
+    }
+
+
+@pytest.fixture(scope="module")
+def settled() -> Settled:
+    fronts = named_once()
+    return settle.settle("1", fronts, candidates(fronts), seen())
+
+
+def test_photographs_alone_bring_back_the_corners_that_an_archive_leaves_out(
+    settled: Settled,
+) -> None:
+    assert [one.front_id for one in settled.fronts] == [
+        one.front_id for one in sample.fronts("1")
+    ]
+
+
+def test_every_facade_stands_where_it_was_painted(settled: Settled) -> None:
+    given = {(one.front_id, one.photo, one.facade) for one in settled.assignments}
+    truth = {(one.front_id, one.photo, one.facade) for one in sample.assignments("1")}
+    assert given == truth
+    assert not settled.rejections
+
+
+def test_the_order_of_what_was_seen_changes_nothing(settled: Settled) -> None:
+    fronts = named_once()
+    again = settle.settle("1", fronts, candidates(fronts), seen()[::-1])
+    assert again.assignments == settled.assignments
+    for a, b in zip(again.block.buildings, settled.block.buildings, strict=True):
+        np.testing.assert_array_equal(a.footprint_m, b.footprint_m)
+        assert (a.building_id, a.height_m) == (b.building_id, b.height_m)
+        assert [w.texture for w in a.walls] == [w.texture for w in b.walls]
+
+
+def test_the_model_tells_each_building_s_measures_and_the_credit(
+    settled: Settled,
+) -> None:
+    views = dict(sample.elevations("1"))
+    data, whole = settle.model(
+        settled.block, views, table=settle.table(settled), credit="An Archive"
+    )
+    (length,) = struct.unpack_from("<I", data, 12)
+    document = json.loads(data[20 : 20 + length])
+    metadata = document["extensions"]["EXT_structural_metadata"]
+    properties = metadata["schema"]["classes"]["building"]["properties"]
+    assert {"id", "block", "lot", "address", "assumed", "photo", "credit"} <= set(
+        properties
+    )
+    assert properties["height_m"] == {"type": "SCALAR", "componentType": "FLOAT32"}
+    assert document["asset"]["copyright"] == "An Archive"
+    assert document["asset"]["extras"]["block"] == "1"
+    highest = max(one.height_m for one in settled.block.buildings)
+    assert whole.positions_m[:, 2].max() == pytest.approx(highest)
