@@ -156,6 +156,8 @@ def test_the_birds_eye_shows_every_building(visit: Visit) -> None:
             const hit = nostalgin.pick(x, y); if (hit) ids.add(hit.id); }
         return [...ids]; })()""")
     assert len(seen) >= 20  # of 26; the tallest hide a few
+    names = visit.ask("nostalgin.page.stage.names.map(one => one.name)")
+    assert {"West 1 Street", "West 2 Street", "First Avenue"} <= set(names)
     visit.page.keyboard.press("b")
 
 

@@ -88,6 +88,7 @@ class Page {
       city.onBlock = (block) => {
         const shapes = block.buildings.map(({ id }) => city.buildings.get(String(id)).shape);
         stage.settle(block, shapes.filter(Boolean));
+        this.inscribe(block);
         standing.push(block);
         if (block === first || city.errors.length) resolve(block);
       };
@@ -96,6 +97,17 @@ class Page {
         else if (city.errors.length >= city.record.blocks.length) reject(error);
       };
     });
+  }
+
+  /** Writes the names of a block's streets, told by buildings that stand on one only. */
+  inscribe(block) {
+    const streets = new Map();
+    for (const { id, street, fronts } of block.buildings) {
+      const { shape } = this.city.buildings.get(String(id));
+      if (!shape || !street || (fronts ?? [0]).length !== 1) continue;
+      streets.set(street, [...(streets.get(street) ?? []), this.frontOf(shape)]);
+    }
+    for (const [street, walls] of streets) this.stage.inscribe(street, rows(walls)[0]);
   }
 
   homeIn(block) {
@@ -189,7 +201,7 @@ class Page {
   }
 
   draw() {
-    this.stage.draw(1 - 0.72 * this.height);
+    this.stage.draw(this.height);
     this.minimap.draw(this.walker.pose, this.city, this.stage.raised, this.chosen, shown.evidence.value);
     const progress = Math.round(this.city.tiles.loadProgress * 100);
     $('progress').setAttribute('aria-valuenow', progress);
@@ -378,7 +390,8 @@ function complain(error) {
 }
 
 async function start() {
-  const city = await open();
+  // street names are painted once, so their letters have to be there
+  const [city] = await Promise.all([open(), document.fonts.load('600 72px Garamond').catch(() => [])]);
   document.title = `${city.record.title} · Nostalgin`;
   document.querySelector('#title h1').textContent = city.record.title;
   fillLegend($('legend').querySelector('ul'));

@@ -7,6 +7,7 @@ import {
 import { acceleratedRaycast } from 'three-mesh-bvh';
 
 import { outlineOf, pavement, shade, street } from './ground.js';
+import { fade, label, repeated } from './labels.js';
 import { HORIZON, sky } from './sky.js';
 
 Mesh.prototype.raycast = acceleratedRaycast;
@@ -29,6 +30,7 @@ export class Stage {
     this.box = new Box3();
     this.raised = [];
     this.paved = new Set();
+    this.names = []; // of streets
     this.chosen = null;
     this.lag = 0;
     this.sharpness = 1;
@@ -54,8 +56,10 @@ export class Stage {
     this.renderer.setPixelRatio(wanted * Math.min(devicePixelRatio, 2));
   }
 
-  draw(haze = 1) {
-    this.scene.fog.density = HAZE * haze;
+  /** `height` is 0 on the street and 1 in the air, where haze thins and names appear. */
+  draw(height = 0) {
+    this.scene.fog.density = HAZE * (1 - 0.85 * height);
+    fade(this.names, height);
     this.dome.position.copy(this.camera.position);
     this.renderer.render(this.scene, this.camera);
   }
@@ -75,6 +79,14 @@ export class Stage {
     this.pave(block.name, [outlineOf(shapes)]);
     this.scene.add(shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35));
     for (const { top } of shapes) this.box.max.y = Math.max(this.box.max.y, top);
+  }
+
+  /** Writes a street's name beside the walls that stand on it. */
+  inscribe(name, row) {
+    const plane = label(name, row);
+    if (repeated(plane, this.names)) return;
+    this.names.push(plane);
+    this.scene.add(plane);
   }
 
   /** Draws a line round one building, or none. */

@@ -1,0 +1,74 @@
+// Street names, written on the streets for the bird's eye.
+
+import { CanvasTexture, Mesh, MeshBasicMaterial, PlaneGeometry } from 'three';
+
+import { KERB_M, SIDEWALK_M } from './ground.js';
+
+const LETTER_M = 6.5;
+const FROM_KERB_M = 4.8;
+const APART_M = 45; // the same name is not written twice within this distance
+const INK = '#f8f4ea';
+
+/** A name, and the row of walls that stand on that street. */
+export function label(name, row) {
+  const [{ a, out }] = row;
+  const right = [out[1], -out[0]];
+  const along = ([x, z]) => x * right[0] + z * right[1];
+  const start = Math.min(...row.map((wall) => along(wall.a)));
+  const end = Math.max(...row.map((wall) => along(wall.b)));
+  const { texture, aspect } = written(name);
+  const width = LETTER_M * aspect;
+  const depth = a[0] * out[0] + a[1] * out[1] + SIDEWALK_M + FROM_KERB_M;
+  const middle = (start + end) / 2;
+  const plane = new Mesh(
+    new PlaneGeometry(width, LETTER_M).rotateX(-Math.PI / 2),
+    new MeshBasicMaterial({ map: texture, transparent: true, opacity: 0, depthWrite: false, fog: false }),
+  );
+  plane.position.set(
+    out[0] * depth + right[0] * middle,
+    0.05 - KERB_M,
+    out[1] * depth + right[1] * middle,
+  );
+  plane.rotation.y = Math.atan2(out[0], out[1]); // read from the street, facing the fronts
+  plane.renderOrder = 1;
+  plane.visible = false;
+  plane.name = name;
+  return plane;
+}
+
+/** Whether a street's name stands near there already. */
+export function repeated(plane, others) {
+  return others.some((other) => other.name === plane.name
+    && other.position.distanceTo(plane.position) < APART_M);
+}
+
+/** Fades all names in or out. */
+export function fade(planes, opacity) {
+  for (const plane of planes) {
+    plane.visible = opacity > 0.02;
+    plane.material.opacity = 0.9 * opacity;
+  }
+}
+
+function written(name) {
+  const canvas = document.createElement('canvas');
+  const context = canvas.getContext('2d');
+  const font = '600 72px Garamond, Georgia, serif';
+  context.font = font;
+  const spaced = name.toUpperCase().split('').join('\u200a');
+  canvas.width = Math.min(2048, Math.ceil(context.measureText(spaced).width) + 48);
+  canvas.height = 112;
+  context.font = font;
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillStyle = INK;
+  context.strokeStyle = '#3a362f';
+  context.lineWidth = 9;
+  context.lineJoin = 'round';
+  context.strokeText(spaced, canvas.width / 2, canvas.height / 2, canvas.width - 24);
+  context.fillText(spaced, canvas.width / 2, canvas.height / 2, canvas.width - 24);
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = 'srgb';
+  texture.anisotropy = 8;
+  return { texture, aspect: canvas.width / canvas.height };
+}
