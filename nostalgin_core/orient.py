@@ -66,10 +66,7 @@ def orient(photo: Photo, facades: tuple[Facade, ...]) -> Oriented:
     found = detect(photo, anywhere & _framed(photo))
     signals = [signal(photo, found, mask) for mask in clear]
     all_lines = signal(photo, found, anywhere)
-    up, _ = vanish.best_vertical(all_lines.strict, all_lines.loose, all_lines.weights)
-    chosen = [vanish.best_horizontal(up, s.strict, s.loose, s.weights) for s in signals]
-    across = np.array([[1.0, 0.0, 0.0] if c is None else c for c in chosen])
-    world = _fit(upright.start(up, across), signals)
+    world = _fit(_start(signals, all_lines), signals)
     again = _choose_again(world, signals)
     if not np.array_equal(again, world.parameters):
         world = _fit(again, signals)
@@ -129,6 +126,26 @@ def signal(
         omega,
         vanish.lengths(loose),
     )
+
+
+def _start(signals: list[Signal], all_lines: Signal) -> Parameters:
+    """Start from what all lines vote to be up, and each front's to be level."""
+    up, share = vanish.best_vertical(
+        all_lines.strict, all_lines.loose, all_lines.weights
+    )
+    nothing = np.array([1.0, 0.0, 0.0]), 0.0
+    chosen = [
+        vanish.best_horizontal(up, s.strict, s.loose, s.weights) or nothing
+        for s in signals
+    ]
+    across = np.array([point for point, _ in chosen])
+    weights = np.array(
+        [votes * s.weights.sum() for (_, votes), s in zip(chosen, signals, strict=True)]
+    )
+    agreed = vanish.agreed_up(
+        up, share * float(all_lines.weights.sum()), across, weights
+    )
+    return upright.start(agreed, across)
 
 
 def _fit(parameters: Parameters, signals: list[Signal]) -> upright.Upright:

@@ -29,7 +29,7 @@ DELTA = 1e-6  # for differences; everything here is of the order of one
 TIE_DEG = 4.0  # fronts this near to parallel or square are taken to be so,
 TIE_SD_DEG = 1.0  # to within this
 TOGETHER = 4.0  # lines to one independent measurement
-GATES_DEG = (3.0, 2.0, 1.5, 1.5)  # a line beyond has no say, round by round
+GATES_DEG = (5.0, 3.0, 2.0, 1.5)  # a line beyond has no say, round by round
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -210,10 +210,29 @@ def best_horizontal(
     strict: Float[np.ndarray, "_ 4"],
     loose: Lines,
     weights: Float[np.ndarray, " n"],
-) -> Float[np.ndarray, "3"] | None:
-    """Choose the horizontal vanishing point with most votes, if there is any."""
+) -> tuple[Float[np.ndarray, "3"], float] | None:
+    """Choose the horizontal vanishing point with most votes, and their share."""
     points, votes = horizontals(vertical, strict, loose, weights)
-    return points[votes.argmax()] if len(points) else None
+    if not len(points):
+        return None
+    return points[votes.argmax()], float(votes.max())
+
+
+def agreed_up(
+    vertical: Float[np.ndarray, "3"],
+    vertical_weight: float,
+    across: Float[np.ndarray, "m 3"],
+    weights: Float[np.ndarray, " m"],
+) -> Float[np.ndarray, "3"]:
+    """Find the way up that suits the vertical point and all horizontals best.
+
+    It is the unit u that minimises w_v |u - v (u . v)|^2 + sum w_i (u . h_i)^2, so the
+    least eigenvector of a 3x3 matrix. Scratches along the film can outvote walls as
+    the vertical; horizontals that meet elsewhere than on its horizon then correct it.
+    """
+    matrix = vertical_weight * (np.eye(3) - np.outer(vertical, vertical))
+    matrix = matrix + (across * weights[:, None]).T @ across
+    return np.linalg.eigh(matrix)[1][:, 0]
 
 
 def spread_out(
