@@ -28,14 +28,14 @@ def segment(
     photo: Photo,
     network: Network,
     *,
-    short_px: int = 448,
+    short_px: int = 416,
     long_px: int = 1344,
     facade_score: float = 0.35,
     occluder_score: float = 0.3,
 ) -> tuple[Instance, ...] | Rejection:
     """Find fronts and what hides them, surest first.
 
-    448 px did best on the held-out block: larger, and towers outgrow what the network
+    416 px did best on the held-out block: larger, and towers outgrow what the network
     takes in at a glance. `long_px` bounds memory on panoramas. Scores below the two
     thresholds are dropped.
     """
