@@ -9,13 +9,12 @@ from typing import Any, Final
 import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
-from apache_beam.typehints.decorators import no_annotations
 
 from nostalgin_core import settle
 from nostalgin_core.records import Block, Building, Elevation, Rejection
 from nostalgin_core.settle import Settled
 from pipelines import tables
-from pipelines.attempt import Attempt, Outcome
+from pipelines.attempt import Attempt
 from pipelines.plan import BlockTask
 from pipelines.stages import Bench, FacadeRef, Work, named
 
@@ -79,8 +78,7 @@ def texture_of(ref: FacadeRef) -> tuple[str, int]:
 class Assign(beam.PTransform):
     """Blocks grouped with their facades in; blocks with cuboids out."""
 
-    @no_annotations
-    def expand(self, grouped: pvalue.PCollection) -> Outcome:
+    def expand(self, grouped: pvalue.PCollection) -> Any:
         """Wire the stage."""
         return grouped | Attempt(placed, stage="assign")
 
@@ -91,8 +89,7 @@ class Model(beam.PTransform):
 
     bench: Bench
 
-    @no_annotations
-    def expand(self, grouped: pvalue.PCollection) -> Outcome:
+    def expand(self, grouped: pvalue.PCollection) -> Any:
         """Wire the stage."""
         return grouped | Attempt(Work(modelled, self.bench), stage="block")
 

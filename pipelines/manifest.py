@@ -185,7 +185,7 @@ def checked(
     )
 
 
-def usable(number: int, cells: dict[str, Any]) -> Row | Rejection:
+def usable(number: int, cells: dict[Any, Any]) -> Row | Rejection:
     """Check one row, and name the row and the remedy if it can't be used."""
     name = f"{CSV} row {number}"
     if None in cells:

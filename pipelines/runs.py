@@ -184,7 +184,7 @@ class WriteTable(beam.PTransform):
     name: str
     rows: Callable[[Any], Rows]
 
-    def expand(self, elements: pvalue.PCollection) -> pvalue.PCollection:
+    def expand(self, elements: pvalue.PCollection) -> Any:
         """Wire rows to one file; it is written even if there are none."""
         return (
             elements

@@ -13,7 +13,6 @@ from typing import Any
 import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
-from apache_beam.typehints.decorators import no_annotations
 
 from nostalgin_core import inpaint, matte, photo, quantise, rectify, segment
 from nostalgin_core.records import (
@@ -25,7 +24,7 @@ from nostalgin_core.records import (
 )
 from nostalgin_core.steps import rounded
 from pipelines import artifacts, site, tables
-from pipelines.attempt import Attempt, Outcome
+from pipelines.attempt import Attempt
 from pipelines.models import Models, Once
 from pipelines.store import Store
 from pipelines.versions import Versions
@@ -85,8 +84,7 @@ class Bench:
 class Read(beam.PTransform):
     """Photos by name in, photos by content out; a missing file is rejected."""
 
-    @no_annotations
-    def expand(self, photos: pvalue.PCollection) -> Outcome:
+    def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
         return photos | Attempt(read, stage="photo")
 
@@ -107,8 +105,7 @@ class Segment(beam.PTransform):
 
     bench: Bench
 
-    @no_annotations
-    def expand(self, photos: pvalue.PCollection) -> Outcome:
+    def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
         network = Once(self.bench.models, "segment")
         work = Work(segmented, self.bench, network)
@@ -121,8 +118,7 @@ class Matte(beam.PTransform):
 
     bench: Bench
 
-    @no_annotations
-    def expand(self, photos: pvalue.PCollection) -> Outcome:
+    def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
         return photos | Attempt(Work(matted, self.bench), stage="matte")
 
@@ -133,8 +129,7 @@ class Rectify(beam.PTransform):
 
     bench: Bench
 
-    @no_annotations
-    def expand(self, photos: pvalue.PCollection) -> Outcome:
+    def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
         return photos | Attempt(Work(rectified, self.bench), stage="rectify")
 
@@ -145,8 +140,7 @@ class Inpaint(beam.PTransform):
 
     bench: Bench
 
-    @no_annotations
-    def expand(self, facades: pvalue.PCollection) -> Outcome:
+    def expand(self, facades: pvalue.PCollection) -> Any:
         """Wire the stage."""
         network = Once(self.bench.models, "inpaint")
         work = Work(inpainted, self.bench, network)
@@ -242,8 +236,7 @@ class Thumbnail(beam.PTransform):
 
     bench: Bench
 
-    @no_annotations
-    def expand(self, photos: pvalue.PCollection) -> Outcome:
+    def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
         return photos | Attempt(Work(shrunk, self.bench), stage="thumbnail")
 

@@ -140,10 +140,17 @@ def to_png(image: np.ndarray) -> bytes:
 
 
 def from_png(code: bytes) -> np.ndarray:
-    """Decode what `to_png` wrote."""
+    """Decode what `to_png` wrote.
+
+    Raises:
+        ValueError: if it is no PNG.
+    """
     if not code:
         return np.zeros((0, 0), np.uint8)
-    return cv2.imdecode(np.frombuffer(code, np.uint8), cv2.IMREAD_UNCHANGED)
+    image = cv2.imdecode(np.frombuffer(code, np.uint8), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise ValueError(f"{len(code)} bytes that are no PNG")
+    return image
 
 
 def table(record: type, records: Iterable[Any]) -> pa.Table:
