@@ -161,6 +161,33 @@ def test_the_birds_eye_shows_every_building(visit: Visit) -> None:
     visit.page.keyboard.press("b")
 
 
+def test_wheel_and_plus_bring_the_bird_nearer(visit: Visit) -> None:
+    visit.ask("nostalgin.setBird(true)")
+    far = visit.ask("nostalgin.page.bird.distance")
+    visit.page.keyboard.press("+")
+    visit.ask("nostalgin.step(0)")
+    near = visit.ask("nostalgin.page.bird.distance")
+    visit.page.mouse.move(320, 200)
+    visit.page.mouse.wheel(0, -100)
+    visit.ask(
+        "new Promise(done => { const look = () => nostalgin.page.input.zoom"
+        " ? done() : setTimeout(look, 20); look(); })"
+    )
+    visit.ask("nostalgin.step(0)")
+    assert far > near > visit.ask("nostalgin.page.bird.distance")
+
+
+def test_dragging_turns_the_head_and_is_no_click(visit: Visit) -> None:
+    visit.stand(9.0, 12.0, yaw=0.0)
+    visit.page.mouse.move(300, 220)
+    visit.page.mouse.down()
+    visit.page.mouse.move(400, 220, steps=4)
+    visit.page.mouse.up()
+    visit.ask("nostalgin.step(0)")
+    assert visit.ask("nostalgin.pose")["yaw"] == pytest.approx(18.3, abs=1.0)
+    assert visit.page.locator("#panel").is_hidden()
+
+
 def test_the_address_bar_shares_the_view(
     visit: Visit, browser: Any, address: str
 ) -> None:

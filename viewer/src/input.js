@@ -3,6 +3,8 @@
 const WALK = { KeyW: [0, 1], ArrowUp: [0, 1], KeyS: [0, -1], ArrowDown: [0, -1], KeyA: [-1, 0], KeyD: [1, 0] };
 const TURN = { ArrowLeft: 1, ArrowRight: -1 };
 const CLICK_PX = 6; // a press that moves less is a click
+const PINCH_PX = 26; // two fingers closing by so much are a notch of the wheel
+const ZOOM = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
 
 export class Input {
   constructor(canvas, stick) {
@@ -61,7 +63,8 @@ export class Input {
         event.preventDefault();
         this.keys.add(event.code);
         this.used = true;
-      } else if (event.code.startsWith('Shift')) this.keys.add(event.code);
+      } else if (event.code in ZOOM) this.zoom += ZOOM[event.code];
+      else if (event.code.startsWith('Shift')) this.keys.add(event.code);
       else if (!event.repeat) this.onKey(event);
     });
     addEventListener('keyup', (event) => this.keys.delete(event.code));
@@ -69,12 +72,16 @@ export class Input {
   }
 
   #pointer() {
-    let last = null;
+    const down = new Map(); // pointer id -> where it is
     let travelled = 0;
     const { canvas } = this;
+    const spread = () => {
+      const [a, b] = [...down.values()];
+      return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
+    };
     canvas.addEventListener('pointerdown', (event) => {
-      last = [event.clientX, event.clientY];
-      travelled = 0;
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      travelled = down.size > 1 ? CLICK_PX : 0; // two fingers never click
       this.used = true;
       canvas.setPointerCapture?.(event.pointerId);
       canvas.focus();
@@ -83,25 +90,27 @@ export class Input {
       if (document.pointerLockElement) {
         this.look[0] -= event.movementX;
         this.look[1] -= event.movementY;
-      } else if (last) {
-        const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]];
-        travelled += Math.abs(dx) + Math.abs(dy);
-        this.look[0] += dx;
-        this.look[1] += dy;
-        last = [event.clientX, event.clientY];
+        return;
       }
+      const last = down.get(event.pointerId);
+      if (!last) return;
+      const before = spread();
+      const here = [event.clientX, event.clientY];
+      down.set(event.pointerId, here);
+      travelled += Math.abs(here[0] - last[0]) + Math.abs(here[1] - last[1]);
+      if (before) this.zoom += (before - spread()) / PINCH_PX;
+      else this.look = [this.look[0] + here[0] - last[0], this.look[1] + here[1] - last[1]];
     });
+    const up = (event) => down.delete(event.pointerId);
     canvas.addEventListener('pointerup', (event) => {
-      if (last && travelled < CLICK_PX) {
-        const locked = Boolean(document.pointerLockElement);
-        const box = canvas.getBoundingClientRect();
-        const x = locked ? 0 : ((event.clientX - box.left) / box.width) * 2 - 1;
-        const y = locked ? 0 : 1 - ((event.clientY - box.top) / box.height) * 2;
-        this.onClick(x, y);
-      }
-      last = null;
+      if (!up(event) || travelled >= CLICK_PX) return;
+      const locked = Boolean(document.pointerLockElement);
+      const box = canvas.getBoundingClientRect();
+      const x = ((event.clientX - box.left) / box.width) * 2 - 1;
+      const y = 1 - ((event.clientY - box.top) / box.height) * 2;
+      this.onClick(locked ? 0 : x, locked ? 0 : y);
     });
-    canvas.addEventListener('pointercancel', () => { last = null; });
+    canvas.addEventListener('pointercancel', up);
     canvas.addEventListener('wheel', (event) => {
       event.preventDefault();
       this.zoom += Math.sign(event.deltaY);

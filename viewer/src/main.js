@@ -282,7 +282,7 @@ class Page {
     press('KeyE', on);
   }
 
-  setBird(on, now = false) {
+  setBird(on, now = matchMedia('(prefers-reduced-motion: reduce)').matches) {
     if (on && !this.flying) {
       this.bird.frame(this.corners(), this.stage.camera, this.bestAzimuth());
     }

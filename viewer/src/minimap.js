@@ -1,6 +1,7 @@
 // A small plan, north up, with the walker in its middle.
 
 const RADIUS_M = 95;
+const LARGEST_M = 120; // of a building, along a side
 const PAPER = '#e9e5da';
 
 export class Minimap {
@@ -24,7 +25,7 @@ export class Minimap {
     c.fillStyle = PAPER;
     for (const outline of raised) fill(c, outline);
     for (const [id, { record, shape }] of city.buildings) {
-      if (!shape) continue;
+      if (!shape?.roofs.length || far(shape.roofs[0][0], x, z)) continue;
       c.fillStyle = c.strokeStyle = id === chosen ? '#b8862b' : ink(record, evidence);
       c.lineWidth = 0.4;
       for (const roof of shape.roofs) {
@@ -52,6 +53,11 @@ export class Minimap {
     c.stroke();
     c.fill();
   }
+}
+
+/** Whether a building lies so far off that nothing of it is on the plan. */
+function far([u, v], x, z) {
+  return Math.max(Math.abs(u - x), Math.abs(v - z)) > RADIUS_M + LARGEST_M;
 }
 
 function fill(c, outline) {

@@ -29,7 +29,8 @@ export class Stage {
     this.scene.add(this.dome, street());
     this.box = new Box3();
     this.raised = [];
-    this.paved = new Set();
+    this.paved = new Set(); // names of blocks
+    this.settled = new Set();
     this.names = []; // of streets
     this.chosen = null;
     this.lag = 0;
@@ -77,6 +78,8 @@ export class Stage {
   /** Adds what is known of a block only once its model is there. */
   settle(block, shapes) {
     this.pave(block.name, [outlineOf(shapes)]);
+    if (this.settled.has(block.name)) return; // it was here before, and went
+    this.settled.add(block.name);
     this.scene.add(shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35));
     for (const { top } of shapes) this.box.max.y = Math.max(this.box.max.y, top);
   }
