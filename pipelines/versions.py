@@ -4,48 +4,19 @@
 
 The code version is raised by hand when a stage's results change; a comment or a rename
 must not send an archive back to its first photo. The parameters are the defaults in the
-signatures of the stage's functions and the constants of its modules, so that a changed
-one can't be forgotten.
+signatures of the stage's functions and the constants of its modules, and of all modules
+of the core that these use, so that a changed one can't be forgotten.
 """
 
 import inspect
 import json
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Final
 
-from nostalgin_core import (
-    amodal,
-    apart,
-    atlas,
-    banded,
-    block,
-    camera,
-    chain,
-    closed_form,
-    cuboid,
-    facade,
-    frame,
-    gltf,
-    inpaint,
-    laplacian,
-    lines,
-    matte,
-    mesh,
-    outline,
-    photo,
-    picture,
-    quad,
-    rectify,
-    segment,
-    smooth,
-    target,
-    trimap,
-    upright,
-    vanish,
-    warp,
-)
+from nostalgin_core import inpaint, matte, photo, rectify, segment, settle
 from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
@@ -58,31 +29,44 @@ CODE: Final = {
     "thumbnail": 1,
 }
 MODULES: Final[dict[str, tuple[ModuleType, ...]]] = {
-    "segment": (photo, frame, segment),
-    "matte": (
-        facade,
-        target,
-        amodal,
-        trimap,
-        laplacian,
-        banded,
-        closed_form,
-        smooth,
-        matte,
-    ),
-    "rectify": (lines, vanish, upright, quad, camera, warp, rectify),
+    "segment": (photo, segment),
+    "matte": (matte,),
+    "rectify": (rectify,),
     "inpaint": (inpaint,),
+    "block": (settle,),
     "thumbnail": (photo,),
-    "block": (chain, outline, apart, cuboid, block, atlas, mesh, picture, gltf),
 }
+CORE: Final = "nostalgin_core."
 PLAIN: Final = (bool, int, float, str, tuple)
 NETWORK: Final = {"segment": "segment", "inpaint": "inpaint"}
+
+
+def family(*modules: ModuleType) -> list[ModuleType]:
+    """List modules of the core and all others of the core that they use, by name."""
+    found: dict[str, ModuleType] = {}
+    waiting = list(modules)
+    while waiting:
+        module = waiting.pop()
+        if module.__name__ in found:
+            continue
+        found[module.__name__] = module
+        for one in vars(module).values():
+            home = one.__name__ if inspect.ismodule(one) else origin(one)
+            if home.startswith(CORE):
+                waiting.append(sys.modules[home])
+    return [found[name] for name in sorted(found)]
+
+
+def origin(one: object) -> str:
+    """Name the module that a function or class was written in."""
+    home = getattr(one, "__module__", None)
+    return home if isinstance(home, str) else ""
 
 
 def parameters(*modules: ModuleType) -> str:
     """Write the constants of modules and the defaults of their functions as text."""
     told = []
-    for module in modules:
+    for module in family(*modules):
         for name, one in sorted(vars(module).items()):
             if inspect.isfunction(one) and one.__module__ == module.__name__:
                 told += [[name, *default] for default in defaults(one)]

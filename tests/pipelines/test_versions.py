@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from nostalgin_core import matte
 from pipelines import versions
 from pipelines.models import Models, Unlocked
 from pipelines.versions import Versions
@@ -28,6 +29,13 @@ def test_a_changed_constant_or_default_is_another_version() -> None:
     ]
     assert len(set(told)) == 3
     assert versions.parameters(module(1.0, reach=2)) == told[0]
+
+
+def test_a_stage_knows_all_modules_that_it_uses() -> None:
+    names = [one.__name__ for one in versions.family(matte)]
+    assert {"nostalgin_core.matte", "nostalgin_core.trimap"} <= set(names)
+    assert "nostalgin_core.rectify" not in names
+    assert names == sorted(names)
 
 
 def test_a_changed_stage_makes_all_after_it_anew_and_none_before() -> None:
