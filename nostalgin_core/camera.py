@@ -78,10 +78,11 @@ def aspect(quad: Corners, focal: float, frame: Box) -> float:
     """
     m1, m2, m4, m3 = np.column_stack([quad, np.ones(4)])  # clockwise to row by row
     under2, under3 = np.cross(m2, m4) @ m3, np.cross(m3, m4) @ m2
-    if min(abs(under2), abs(under3)) < 1e-9:
-        raise ValueError(f"three corners in line: {quad.tolist()}")
     diagonal = np.cross(m1, m4)
-    n2 = (diagonal @ m3) / under2 * m2 - m1
-    n3 = (diagonal @ m2) / under3 * m3 - m1
+    over2, over3 = diagonal @ m3, diagonal @ m2
+    if min(abs(under2), abs(under3), abs(over2), abs(over3)) < 1e-9:
+        raise ValueError(f"three corners in line: {quad.tolist()}")
+    n2 = over2 / under2 * m2 - m1
+    n3 = over3 / under3 * m3 - m1
     from_photo = np.linalg.inv(matrix(focal, frame))
     return float(np.linalg.norm(from_photo @ n2) / np.linalg.norm(from_photo @ n3))

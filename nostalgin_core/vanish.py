@@ -123,7 +123,8 @@ def without_doubles(
     """
     sign = np.where(points[:, 2] < 0, -1.0, 1.0)
     flat = np.abs(points[:, 2]) < np.radians(cell_deg) / 2
-    flip = np.where(points[:, 1] < 0, -1.0, 1.0)
+    larger = np.abs(points[:, 0]) >= np.abs(points[:, 1])
+    flip = np.where(np.where(larger, points[:, 0], points[:, 1]) < 0, -1.0, 1.0)
     points = points * np.where(flat, flip, sign)[:, None]
     points = np.where(flat[:, None], points * [1.0, 1.0, 0.0], points)
     cells = np.rint(points / np.radians(cell_deg)).astype(np.int64)

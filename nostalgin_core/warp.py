@@ -1,7 +1,8 @@
 """Carry a front from the photo to its elevation: pixels, alpha, and what each rests on.
 
-Nothing is invented here. Texels that the camera did not see stay black and are marked
-for the inpainter: `INPAINTED` behind an occluder, `BEYOND_FRAME` outside the frame.
+Nothing is painted here. Texels that the camera did not see stay black and are marked
+for the inpainter: `INPAINTED` where something hides the front, `BEYOND_FRAME` outside
+the frame. `NOTHING` is only what lies open to the sky over a stepped roof.
 """
 
 import cv2
@@ -74,7 +75,7 @@ def elevate(
     framed = within(frame, photo_from_elevation, shape)
     seen = np.where(framed, np.clip(seen, 0, 1), np.float32(0))
     rests_on = np.full(shape, evidence.NOTHING, np.uint8)
-    rests_on[front] = evidence.INPAINTED
+    rests_on[front | ~open_to_sky(~front)] = evidence.INPAINTED
     rests_on[seen > SOFT] = evidence.SOFT_EDGE
     rests_on[seen > SEEN] = evidence.PHOTOGRAPHED
     rests_on[~framed] = evidence.BEYOND_FRAME
@@ -97,3 +98,14 @@ def within(frame: Box, photo_from_elevation: Matrix3, shape: tuple[int, int]) ->
         & (v >= frame.y0 * depth)
         & (v <= (frame.y1 - 1) * depth)
     )
+
+
+def open_to_sky(empty: Mask) -> Mask:
+    """Tell which empty texels have a way to the top edge through empty ones.
+
+    What a mask leaves out below that, in the wall or at its foot, was covered by
+    something, since walls have no holes and stand on the ground.
+    """
+    _, label = cv2.connectedComponents(empty.astype(np.uint8), connectivity=4)
+    at_top = np.unique(label[0])
+    return np.isin(label, at_top[at_top > 0])
