@@ -49,11 +49,12 @@ class Models:
         Raises:
             Unlocked: if it is missing, or another file than the lock names.
         """
+        wanted = self.sha256(name)
         path = Path(self.folder) / f"{name}.onnx"
         if not path.is_file():
             raise Unlocked(f"{path} is missing: name a folder that has it")
         data = path.read_bytes()
-        if hashlib.sha256(data).hexdigest() != self.sha256(name):
+        if hashlib.sha256(data).hexdigest() != wanted:
             raise Unlocked(
                 f"{path} is not the file that {LOCK} names: install the package again, "
                 "or write the new checksum if the network was changed on purpose"
