@@ -95,8 +95,10 @@ def explain_command(
     try:
         networks = shelf.Models(str(models or shelf.PACKAGED)).networks(placard=placard)
         report = explain(data, out, networks, started=started)
-    except (Unreadable, FileNotFoundError, shelf.Unlocked) as problem:
+    except Unreadable as problem:
         raise fail(f"{photo}: {problem}") from problem
+    except shelf.Unlocked as problem:
+        raise fail(str(problem)) from problem
     targets = sum(one["target"] for one in report["facades"])
     typer.echo(
         f"{len(report['facades'])} facades ({targets} target), "
