@@ -33,7 +33,7 @@ def apart(
         for corners, turn in zip(footprints, turns, strict=True)
     ]
     if outline_m is not None:
-        ground = shapely.Polygon(outline_m).buffer(1e-6)
+        ground = _polygon(outline_m).buffer(1e-6)
         kept = [
             _cut(
                 one, turn, lambda one: _polygon(one).difference(ground).area > TOUCH_M2
@@ -56,8 +56,13 @@ def apart(
     return kept
 
 
-def _polygon(corners: Corners) -> shapely.Polygon:
-    return shapely.Polygon(corners)
+def _polygon(points: Points) -> shapely.Polygon:
+    """Make a polygon; where its edges cross, the hull stands for it."""
+    shape = shapely.Polygon(points)
+    if shape.is_valid:
+        return shape
+    hull = shapely.MultiPoint(points).convex_hull
+    return hull if isinstance(hull, shapely.Polygon) else shapely.Polygon()
 
 
 def _valid(corners: Corners) -> bool:

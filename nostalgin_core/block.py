@@ -53,12 +53,26 @@ def block(
     numbers = sorted({front.ring for front in fronts})
     rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
     placed = laid_out(list(zip(chained(rings), rings, strict=True)))
-    footprints = [footprint for ring in placed for footprint in ring.footprints]
+    footprints = _distinct([one for ring in placed for one in ring.footprints])
     return Block(
         block=name,
         buildings=tuple(raised(footprints, shown, copied=copied)),
         outline_m=tuple(ring.outline_m for ring in placed),
     )
+
+
+def _distinct(footprints: Sequence[Footprint]) -> list[Footprint]:
+    """Rename buildings of a lot that stands in several rings, but for the first."""
+    used: set[str] = set()
+    unique = []
+    for footprint in footprints:
+        name, count = footprint.building_id, 1
+        while name in used:
+            count += 1
+            name = f"{footprint.building_id}-{count}"
+        used.add(name)
+        unique.append(replace(footprint, building_id=name))
+    return unique
 
 
 def elevations(

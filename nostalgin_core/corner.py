@@ -8,7 +8,7 @@ another lot there, the photograph is the umpire, and the lot moves to the end.
 """
 
 from collections import defaultdict
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from nostalgin_core.pieces import DEPTH_M
@@ -40,7 +40,7 @@ def with_corners(
         ring: max(max(sides) + 1, 4 if set(sides) == {0, 2} else 1)
         for ring, sides in rings.items()
     }
-    taken = _known(fronts, counts)
+    taken = _known(rings, counts)
     waiting = [
         front
         for front in sorted(fronts, key=lambda front: (front.ring, front.rank))
@@ -78,15 +78,32 @@ def building(front: Front) -> str:
     return f"{front.block}-{front.lot}"
 
 
-def _known(fronts: Sequence[Front], counts: dict[int, int]) -> set[Corner]:
-    """Find corners that the catalogue gives to a lot by naming two streets."""
+def _known(
+    rings: Mapping[int, dict[int, list[Front]]], counts: Mapping[int, int]
+) -> set[Corner]:
+    """Find corners that the catalogue gives to a lot by naming two streets.
+
+    Such a lot is put at the ends of both sides; of several at one corner, the first.
+    """
     taken = set()
-    for a in fronts:
-        for b in fronts:
-            following = (a.side + 1) % counts[a.ring]
-            if building(a) == building(b) and a.ring == b.ring and b.side == following:
-                taken.add(Corner(a.ring, a.side, b.side))
+    for ring, sides in rings.items():
+        for side in sorted(sides):
+            following = (side + 1) % counts[ring]
+            lots = [front.lot for front in sides.get(following, [])]
+            both = [front.lot for front in sides[side] if front.lot in lots]
+            if not both or following == side or (counts[ring] == 2 and side == 1):
+                continue
+            _to_end(sides[side], both[-1], place=len(sides[side]))
+            _to_end(sides[following], both[-1], place=0)
+            taken.add(Corner(ring, side, following))
     return taken
+
+
+def _to_end(side: list[Front], lot: str, *, place: int) -> None:
+    """Move a lot's front to one end of its side."""
+    front = next(one for one in side if one.lot == lot)
+    side.remove(front)
+    side.insert(min(place, len(side)), front)
 
 
 def _choices(

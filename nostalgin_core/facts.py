@@ -40,7 +40,8 @@ def table(
         "building_id": [building.building_id for building in block.buildings],
         "block": [block.block] * len(block.buildings),
         "lot": [
-            one.building_id.removeprefix(f"{block.block}-") for one in block.buildings
+            some[0].lot if some else one.building_id.removeprefix(f"{block.block}-")
+            for one, some in zip(block.buildings, own, strict=True)
         ],
         "address": [address(some) for some in own],
         "assumed": np.array([one.assumed for one in block.buildings], np.uint8),

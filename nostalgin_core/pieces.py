@@ -8,6 +8,7 @@ import itertools
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -39,24 +40,57 @@ class Piece:
 
 
 def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
-    """Sort fronts into sides; a side without fronts stays empty."""
+    """Sort fronts into sides; a side without fronts stays empty.
+
+    Fronts of one lot that do not meet at a corner (on opposite streets, say) stand for
+    a building each; all but the first get the side's number behind their name.
+    """
     present = {front.side for front in fronts}
     count = 4 if present == {0, 2} else max(present) + 1
-    sides: list[list[Piece]] = [[] for _ in range(count)]
+    sides: list[list[Front]] = [[] for _ in range(count)]
     for front in sorted(fronts, key=lambda front: front.rank):
-        sides[front.side].append(
-            Piece(
-                building_id=f"{front.block}-{front.lot}",
-                front_id=front.front_id,
-                width_m=front.width_m,
-                width_sd=ASSUMED_SD if front.width_assumed else KNOWN_SD,
-                depth_m=front.depth_m or DEPTH_M,
-                lot=front.lot,
-                street=front.street,
-                numbers=house_numbers(front.address),
-            )
-        )
-    return sides
+        sides[front.side].append(front)
+    names = _names(sides)
+    return [[_piece(front, names[front.front_id]) for front in side] for side in sides]
+
+
+def _piece(front: Front, name: str) -> Piece:
+    return Piece(
+        building_id=name,
+        front_id=front.front_id,
+        width_m=front.width_m,
+        width_sd=ASSUMED_SD if front.width_assumed else KNOWN_SD,
+        depth_m=front.depth_m or DEPTH_M,
+        lot=front.lot,
+        street=front.street,
+        numbers=house_numbers(front.address),
+    )
+
+
+def _names(sides: Sequence[Sequence[Front]]) -> dict[str, str]:
+    """Name the building of each front; fronts that meet at a corner share one."""
+    following = {
+        b[0].front_id: a[-1].front_id
+        for a, b in _corners(sides)
+        if a and b and a[-1].lot == b[0].lot and a[-1].front_id != b[0].front_id
+    }
+    leaders: dict[str, str] = {}
+    for front_id in (front.front_id for side in sides for front in side):
+        leader, passed = front_id, {front_id}
+        while leader in following and following[leader] not in passed:
+            leader = following[leader]
+            passed.add(leader)
+        leaders[front_id] = min(passed) if leader in following else leader
+    names: dict[str, str] = {}
+    used: set[str] = set()
+    for front in (front for side in sides for front in side):
+        leader = leaders[front.front_id]
+        if leader not in names:
+            plain = f"{front.block}-{front.lot}"
+            name = plain if plain not in used else f"{plain}-{front.side}"
+            names[leader] = name if name not in used else front.front_id
+            used.add(names[leader])
+    return {front_id: names[leader] for front_id, leader in leaders.items()}
 
 
 def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
@@ -96,8 +130,8 @@ def with_corners(sides: Sequence[Sequence[Piece]]) -> list[list[Piece]]:
 
 
 def _corners(
-    sides: Sequence[Sequence[Piece]],
-) -> list[tuple[Sequence[Piece], Sequence[Piece]]]:
+    sides: Sequence[Sequence[Any]],
+) -> list[tuple[Sequence[Any], Sequence[Any]]]:
     """Pair each side with the one after it."""
     following = [*sides[1:], *(sides[:1] if len(sides) > 2 else [])]
     return list(zip(sides, following, strict=False))

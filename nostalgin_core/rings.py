@@ -61,7 +61,7 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
             ordered = [in_order(side, law) for side in ring]
             warnings += [doubt for side in ordered for doubt in disorder(side)]
             made += numbered(started(ordered), ring=number)
-    return tuple(made), (*warnings, *doubts)
+    return distinct(made), (*warnings, *doubts)
 
 
 def as_given(some: Sequence[Spot]) -> list[Front]:
@@ -269,6 +269,23 @@ def disorder(side: Sequence[Spot]) -> Iterable[str]:
                 f"block {a.block}, {a.street}: lots {a.lot} ({a.address}) and {b.lot} "
                 f"({b.address}) stand by house number, against the order of lots"
             )
+
+
+def distinct(made: Sequence[Front]) -> tuple[Front, ...]:
+    """Count fronts of one name: a lot may have several on sides of the same number.
+
+    They stand in different rings, or on two streets that make one side.
+    """
+    used: set[str] = set()
+    unique = []
+    for front in made:
+        name, count = front.front_id, 1
+        while name in used:
+            count += 1
+            name = f"{front.front_id}-{count}"
+        used.add(name)
+        unique.append(replace(front, front_id=name))
+    return tuple(unique)
 
 
 def started(sides: Sequence[list[Spot]]) -> list[list[Spot]]:

@@ -122,7 +122,13 @@ def table(one: Settled) -> dict[str, list[str]]:
 
 def fronts_of(one: Settled, building_id: str) -> list[Front]:
     """List the fronts of one building, in ring order."""
-    return [front for front in one.fronts if corner.building(front) == building_id]
+    walls = next(
+        building.walls
+        for building in one.block.buildings
+        if building.building_id == building_id
+    )
+    own = {wall.front_id for wall in walls}
+    return [front for front in one.fronts if front.front_id in own]
 
 
 def address(front: Front) -> str:

@@ -258,3 +258,22 @@ def test_a_lot_as_long_as_its_side_takes_both_corners() -> None:
     ]
     got = owners(fronts)
     assert got[0, 1] == got[1, 2] == "36"
+
+
+def test_a_lot_on_opposite_streets_is_two_buildings_of_different_names() -> None:
+    through = [
+        front(0, 0, "a", 30.0),
+        front(1, 1, "b", 20.0),
+        front(1, 2, "c", 20.0),
+        front(2, 3, "d", 15.0),
+        front(2, 4, "t", 15.0),
+        front(3, 5, "e", 40.0),
+        front(0, 6, "t", 20.0),
+        front(0, 7, "f", 20.0),
+    ]
+    ring = chain(through)
+    names = [one.building_id for one in ring.footprints]
+    assert len(names) == len(set(names)) == 8
+    assert {"9-t", "9-t-2"} <= set(names)
+    stood = {name for one in ring.footprints for name in one.front_ids if name}
+    assert stood == {one.front_id for one in through}

@@ -1,4 +1,5 @@
 import csv
+from dataclasses import replace
 
 from nostalgin_core import catalogue, corner, rings
 from nostalgin_core.records import Front
@@ -123,3 +124,10 @@ def test_block_993_comes_out_as_its_photographs_show_it() -> None:
         "47@Broadway",
         "11@Broadway",
     ]
+
+
+def test_a_lot_that_the_catalogue_names_on_two_streets_stands_at_their_corner() -> None:
+    fronts = list(FRONTS)
+    fronts[1] = replace(fronts[1], front_id="9-0x-0", lot="0x")
+    fronts[4] = replace(fronts[4], front_id="9-0x-1", lot="0x")
+    assert ids(corner.with_corners(fronts, set()))[2:4] == ["9-0x-0", "9-0x-1"]

@@ -3,7 +3,7 @@ import csv
 import numpy as np
 import pytest
 
-from nostalgin_core import catalogue, rings
+from nostalgin_core import block, catalogue, rings
 from nostalgin_core.catalogue import Entry
 from nostalgin_core.directions import directions
 from nostalgin_core.records import Front
@@ -182,3 +182,22 @@ def listed(block: str | None = None) -> list[Entry]:
     text = (DATA / "taxphotos/catalogue.csv").read_text("utf-8-sig").splitlines()
     entries = catalogue.read(list(csv.DictReader(text))).entries
     return [one for one in entries if block in (None, one.block)]
+
+
+def test_strange_catalogues_make_fronts_of_different_names_and_blocks_that_stand() -> (
+    None
+):
+    rng = np.random.default_rng(5)
+    streets = ["", "Broadway", "West 1 Street", "West 2 Street", "A Avenue", "rue X"]
+    numbers = ["", "rear", "7", "12", "101-109", "130", "132-6"]
+    for _ in range(6):
+        rows = [
+            (f"{rng.integers(1, 150)}", rng.choice(streets), rng.choice(numbers))
+            for _ in range(rng.integers(1, 14))
+        ]
+        fronts, _ = rings.fronts(entries(*rows))
+        ids = [one.front_id for one in fronts]
+        assert len(ids) == len(set(ids))
+        built = block.block("9", fronts, [], {})
+        stood = [w.front_id for one in built.buildings for w in one.walls if w.front_id]
+        assert sorted(stood) == sorted(ids)
