@@ -2,7 +2,8 @@
 
 import { MathUtils, Quaternion, Raycaster, Vector2, Vector3 } from 'three';
 
-import { Bird, ELEVATION_RAD } from './bird.js';
+import { api } from './api.js';
+import { Bird } from './bird.js';
 import { open } from './city.js';
 import { nameOfCode } from './evidence.js';
 import { Finder } from './finder.js';
@@ -13,15 +14,12 @@ import { shown } from './paint.js';
 import { Panel } from './panel.js';
 import { fromHash, toHash } from './pose.js';
 import { Stage } from './stage.js';
-import { frontOf } from './survey.js';
-import { Walker, along, before, rows } from './walker.js';
-import { contains } from './outline.js';
+import { bestAzimuth, corners, frontFor, homeIn, nearest, poseBefore } from './vantage.js';
+import { Walker, rows } from './walker.js';
 import { nameOf } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 const FLIGHT_S = 1.1;
-const FARTHEST_M = 28; // to step back from a front
-const MOST_WALLS = 300; // are looked at to choose a view
 const LONGEST_STEP_S = 0.1;
 const SETTLING_FRAMES = 3; // after a change, so that a sharp picture stays
 
@@ -71,7 +69,7 @@ class Page {
     const settled = this.firstBlock();
     stage.renderer.setAnimationLoop((time) => this.frame(time));
     const block = await settled;
-    this.home = this.homeIn(block);
+    this.home = homeIn(this.city, block, this.walker.pose);
     if (!wished.pose) this.walker.pose = this.home;
     if (wished.bird) this.setBird(true, true);
     if (wished.building && city.buildings.has(wished.building)) this.select(wished.building);
@@ -105,44 +103,9 @@ class Page {
     for (const { id, street, fronts } of block.buildings) {
       const { shape } = this.city.buildings.get(String(id));
       if (!shape || !street || (fronts ?? [0]).length !== 1) continue;
-      streets.set(street, [...(streets.get(street) ?? []), this.frontOf(shape)]);
+      streets.set(street, [...(streets.get(street) ?? []), frontFor(this.city, shape)]);
     }
     for (const [street, walls] of streets) this.stage.inscribe(street, rows(walls)[0]);
-  }
-
-  homeIn(block) {
-    const known = block.buildings.map(({ id }) => this.city.buildings.get(String(id)));
-    const walls = known.flatMap(({ shape }) => shape?.walls ?? []).filter((wall) => this.clear(wall));
-    const [best] = rows(walls.filter(({ kind }) => kind === 'own'));
-    const row = best ?? rows(walls)[0];
-    return row ? along(row, this.room(row[0])) : this.walker.pose;
-  }
-
-  poseBefore(shape) {
-    const wall = this.frontOf(shape);
-    return before(wall, this.room(wall));
-  }
-
-  frontOf(shape) {
-    return frontOf(shape, (candidate) => this.clear(candidate));
-  }
-
-  /** How far one can step back from a wall. */
-  room({ a, b, out: [x, z] }) {
-    const out = new Vector3(x, 0, z);
-    const foot = new Vector3((a[0] + b[0]) / 2, 1.5, (a[1] + b[1]) / 2).addScaledVector(out, 0.3);
-    this.ray.set(foot, out);
-    const hit = this.ray.intersectObjects([...this.city.walls], false)[0];
-    return hit ? Math.max(2.5, Math.min(FARTHEST_M, hit.distance * 0.7)) : FARTHEST_M;
-  }
-
-  /** Whether the ground before a wall is free. */
-  clear({ a, b, out }) {
-    const at = [(a[0] + b[0]) / 2 + 2 * out[0], (a[1] + b[1]) / 2 + 2 * out[1]];
-    for (const { shape } of this.city.buildings.values()) {
-      if (shape?.roofs.some((roof) => contains(roof, at))) return false;
-    }
-    return true;
   }
 
   frame(time) {
@@ -210,7 +173,7 @@ class Page {
 
   /** Says where one is, on the page and in the address bar. */
   tell() {
-    const near = this.nearest();
+    const near = nearest(this.city, this.walker.feet);
     const text = near ? `${near.distance < 25 ? 'Before' : 'Near'} ${nameOf(near.record)}` : '';
     if ($('place').textContent !== text) $('place').textContent = text;
     const hash = toHash({
@@ -220,22 +183,6 @@ class Page {
       bird: this.flying,
     });
     if (hash !== location.hash) history.replaceState(null, '', hash);
-  }
-
-  nearest() {
-    const { x, z } = this.walker.feet;
-    let best = null;
-    for (const { record, shape } of this.city.buildings.values()) {
-      for (const { a, b, out } of shape?.walls ?? []) {
-        const inFront = (x - a[0]) * out[0] + (z - a[1]) * out[1] > -0.5;
-        const t = ((x - a[0]) * (b[0] - a[0]) + (z - a[1]) * (b[1] - a[1]))
-          / ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2);
-        const s = MathUtils.clamp(t, 0, 1);
-        const distance = Math.hypot(a[0] + s * (b[0] - a[0]) - x, a[1] + s * (b[1] - a[1]) - z);
-        if (inFront && (!best || distance < best.distance)) best = { record, distance };
-      }
-    }
-    return best;
   }
 
   /** The building at a point of the view, both coordinates from -1 to 1; or null. */
@@ -267,7 +214,7 @@ class Page {
     const found = this.city.buildings.get(id);
     if (found.shape) {
       this.setBird(false);
-      this.walker.pose = this.poseBefore(found.shape);
+      this.walker.pose = poseBefore(this.city, found.shape);
     } else if (found.block.outline_m?.length) {
       const [x, z] = this.city.placed(found.block, found.block.outline_m[0])[0];
       this.setBird(false);
@@ -284,47 +231,12 @@ class Page {
 
   setBird(on, now = matchMedia('(prefers-reduced-motion: reduce)').matches) {
     if (on && !this.flying) {
-      this.bird.frame(this.corners(), this.stage.camera, this.bestAzimuth());
+      this.bird.frame(corners(this.city, this.stage.box), this.stage.camera, bestAzimuth(this.city, this.walker.yaw));
     }
     this.flying = on;
     if (now) this.height = on ? 1 : 0;
     document.body.classList.toggle('bird', on);
     press('KeyB', on);
-  }
-
-  /** The side from which most of the photographs can be seen; of equals, the one ahead. */
-  bestAzimuth() {
-    const walls = [...this.city.buildings.values()].flatMap(({ shape }) => shape?.walls ?? []);
-    const fronts = walls.filter(({ kind }) => kind === 'own').slice(0, MOST_WALLS);
-    const sides = Array.from({ length: 16 }, (_, i) => (i * Math.PI) / 8);
-    const worth = sides.map((azimuth) => {
-      const sum = fronts.reduce((total, wall) => total + this.worth(wall, azimuth), 0);
-      return sum * (1 + 0.1 * Math.cos(azimuth - this.walker.yaw));
-    });
-    return sides[worth.indexOf(Math.max(...worth))];
-  }
-
-  /** How much of a wall is seen from far and above; 0 where something hides it. */
-  worth({ a, b, out, top }, azimuth) {
-    const level = new Vector3(Math.sin(azimuth), 0, Math.cos(azimuth));
-    const facing = out[0] * level.x + out[1] * level.z;
-    if (facing <= 0.1) return 0;
-    const from = new Vector3((a[0] + b[0]) / 2 + 0.3 * out[0], 0.6 * top, (a[1] + b[1]) / 2 + 0.3 * out[1]);
-    this.ray.set(from, level.setY(Math.tan(ELEVATION_RAD)).normalize());
-    if (this.ray.intersectObjects([...this.city.walls], false).length) return 0;
-    return facing * Math.min(20, Math.hypot(b[0] - a[0], b[1] - a[1])) * Math.min(40, top);
-  }
-
-  /** Points that the bird's view has to hold. */
-  corners() {
-    const { min, max } = this.stage.box;
-    const points = [];
-    for (const { shape } of this.city.buildings.values()) {
-      for (const { a, top, bottom } of shape?.walls ?? []) {
-        points.push(new Vector3(a[0], bottom, a[1]), new Vector3(a[0], top, a[1]));
-      }
-    }
-    return points.length ? points : [min.clone(), max.clone()];
   }
 
   key(code) {
@@ -396,42 +308,10 @@ async function start() {
   document.querySelector('#title h1').textContent = city.record.title;
   fillLegend($('legend').querySelector('ul'));
   const page = new Page(city);
-  window.nostalgin.page = page;
   await page.begin();
   return page;
 }
 
 const starting = start();
 starting.catch(complain);
-
-window.nostalgin = {
-  ready: starting.then(() => true),
-  step: async (dt) => {
-    const page = await starting;
-    page.step(dt);
-    page.city.update(page.walker.feet);
-    page.draw();
-  },
-  hold: async (on = true) => { (await starting).held = on; },
-  get pose() { return window.nostalgin.page.walker.pose; },
-  setPose: (pose) => { window.nostalgin.page.walker.pose = pose; window.nostalgin.page.aim(); },
-  pick: (x, y) => window.nostalgin.page.pick(x, y),
-  select: (id) => window.nostalgin.page.select(id),
-  setEvidence: (on) => window.nostalgin.page.setEvidence(on),
-  setBird: (on) => window.nostalgin.page.setBird(on, true),
-  get stats() {
-    const { city, stage, height } = window.nostalgin.page;
-    const { calls, triangles } = stage.renderer.info.render;
-    return {
-      loaded: city.loaded,
-      blocks: city.record.blocks.length,
-      progress: city.tiles.loadProgress,
-      errors: [...city.errors],
-      walls: city.walls.size,
-      calls,
-      triangles,
-      height,
-    };
-  },
-};
-
+window.nostalgin = api(starting);

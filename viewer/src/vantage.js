@@ -1,0 +1,107 @@
+// Good places to see the city from, told by what stands where.
+
+import { MathUtils, Raycaster, Vector3 } from 'three';
+
+import { ELEVATION_RAD } from './bird.js';
+import { contains } from './outline.js';
+import { frontOf } from './survey.js';
+import { along, before, rows } from './walker.js';
+
+const FARTHEST_M = 28; // to step back from a front
+const NEAREST_M = 2.5;
+const MOST_WALLS = 300; // are looked at to choose a view
+
+const ray = new Raycaster();
+ray.firstHitOnly = true;
+
+/** Where a walk begins: along the row of a block that shows most photographs. */
+export function homeIn(city, block, otherwise) {
+  const known = block.buildings.map(({ id }) => city.buildings.get(String(id)));
+  const walls = known.flatMap(({ shape }) => shape?.walls ?? []).filter((wall) => clear(city, wall));
+  const [best] = rows(walls.filter(({ kind }) => kind === 'own'));
+  const row = best ?? rows(walls)[0];
+  return row ? along(row, room(city, row[0])) : otherwise;
+}
+
+/** Where to stand to see a building. */
+export function poseBefore(city, shape) {
+  const wall = frontFor(city, shape);
+  return before(wall, room(city, wall));
+}
+
+/** The wall that a building shows to the street. */
+export function frontFor(city, shape) {
+  return frontOf(shape, (wall) => clear(city, wall));
+}
+
+/** The wall of which the feet stand in front, and how far off. */
+export function nearest(city, { x, z }) {
+  let best = null;
+  for (const { record, shape } of city.buildings.values()) {
+    for (const { a, b, out } of shape?.walls ?? []) {
+      if ((x - a[0]) * out[0] + (z - a[1]) * out[1] < -0.5) continue;
+      const way = [b[0] - a[0], b[1] - a[1]];
+      const t = ((x - a[0]) * way[0] + (z - a[1]) * way[1]) / (way[0] ** 2 + way[1] ** 2);
+      const s = MathUtils.clamp(t, 0, 1);
+      const distance = Math.hypot(a[0] + s * way[0] - x, a[1] + s * way[1] - z);
+      if (!best || distance < best.distance) best = { record, distance };
+    }
+  }
+  return best;
+}
+
+/** The side from which most of the photographs can be seen; of equals, the one ahead. */
+export function bestAzimuth(city, yaw) {
+  const walls = [...city.buildings.values()].flatMap(({ shape }) => shape?.walls ?? []);
+  const fronts = walls.filter(({ kind }) => kind === 'own').slice(0, MOST_WALLS);
+  const sides = Array.from({ length: 16 }, (_, i) => (i * Math.PI) / 8);
+  const worth = sides.map((azimuth) => {
+    const sum = fronts.reduce((total, wall) => total + seen(city, wall, azimuth), 0);
+    return sum * (1 + 0.1 * Math.cos(azimuth - yaw));
+  });
+  return sides[worth.indexOf(Math.max(...worth))];
+}
+
+/** Points that the bird's view has to hold. */
+export function corners(city, { min, max }) {
+  const points = [];
+  for (const { shape } of city.buildings.values()) {
+    for (const { a, top, bottom } of shape?.walls ?? []) {
+      points.push(new Vector3(a[0], bottom, a[1]), new Vector3(a[0], top, a[1]));
+    }
+  }
+  return points.length ? points : [min.clone(), max.clone()];
+}
+
+/** How far one can step back from a wall. */
+function room(city, wall) {
+  const out = new Vector3(wall.out[0], 0, wall.out[1]);
+  ray.set(off(wall, 1.5), out);
+  const [hit] = ray.intersectObjects([...city.walls], false);
+  return hit ? MathUtils.clamp(hit.distance * 0.7, NEAREST_M, FARTHEST_M) : FARTHEST_M;
+}
+
+/** Whether the ground before a wall is free. */
+function clear(city, { a, b, out }) {
+  const at = [(a[0] + b[0]) / 2 + 2 * out[0], (a[1] + b[1]) / 2 + 2 * out[1]];
+  for (const { shape } of city.buildings.values()) {
+    if (shape?.roofs.some((roof) => contains(roof, at))) return false;
+  }
+  return true;
+}
+
+/** How much of a wall is seen from far and above; 0 where something hides it. */
+function seen(city, wall, azimuth) {
+  const { a, b, out, top } = wall;
+  const towards = new Vector3(Math.sin(azimuth), 0, Math.cos(azimuth));
+  const facing = out[0] * towards.x + out[1] * towards.z;
+  if (facing <= 0.1) return 0;
+  ray.set(off(wall, 0.6 * top), towards.setY(Math.tan(ELEVATION_RAD)).normalize());
+  if (ray.intersectObjects([...city.walls], false).length) return 0;
+  return facing * Math.min(20, Math.hypot(b[0] - a[0], b[1] - a[1])) * Math.min(40, top);
+}
+
+/** A point just before the middle of a wall. */
+function off({ a, b, out }, height) {
+  return new Vector3((a[0] + b[0]) / 2 + 0.3 * out[0], height, (a[1] + b[1]) / 2 + 0.3 * out[1]);
+}
