@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from jaxtyping import Float32
 
-from nostalgin_core import facade, laplacian
+from nostalgin_core import closed_form, facade
 from nostalgin_core.arrays import Gray, Mask, Probability
 from nostalgin_core.laplacian import Belief
 from nostalgin_core.records import Facade, Instance, Matted, Occluder, Photo, Rejection
@@ -58,7 +58,7 @@ def matte(
         facade_px: How far a front's band reaches from its outline, at least and at
             most.
         occluder_px: The same for what hides fronts.
-        epsilon: See `laplacian.alpha`.
+        epsilon: See `closed_form.alpha`.
         belief: The weight of the network's probability inside the band.
     """
     fronts = facade.arrange(photo, instances)
@@ -102,7 +102,7 @@ def soft(
         return result
     part = _around(band)
     prior = Belief(likely[part], belief)
-    result[part] = laplacian.alpha(
+    result[part] = closed_form.alpha(
         image[part], known[part], prior=prior, epsilon=epsilon
     )
     return result

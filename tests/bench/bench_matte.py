@@ -18,7 +18,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from nostalgin_core import laplacian
+from nostalgin_core import closed_form
 from nostalgin_core.trimap import BACKGROUND, FOREGROUND, UNKNOWN, signed_distance
 
 
@@ -41,7 +41,7 @@ def front(h: int, w: int, *, band_px: int) -> tuple[np.ndarray, np.ndarray]:
 
 def ours(image: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Solve the band alone."""
-    return laplacian.alpha(image, known)
+    return closed_form.alpha(image, known)
 
 
 def peer(image: np.ndarray, known: np.ndarray) -> np.ndarray:

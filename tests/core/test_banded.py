@@ -1,0 +1,40 @@
+import cv2
+import numpy as np
+from scipy import sparse
+
+from nostalgin_core import banded, laplacian
+from nostalgin_core.laplacian import System
+
+
+def _whole(system: System) -> np.ndarray:
+    n = len(system.right)
+    there = system.neighbours >= 0
+    rows = np.broadcast_to(np.arange(n), there.shape)[there]
+    upper = sparse.coo_array(
+        (system.values[there], (rows, system.neighbours[there])), shape=(n, n)
+    ).toarray()
+    return upper + np.triu(upper, 1).T
+
+
+def _noise(h: int, w: int, seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).random((h, w))
+
+
+def test_both_solvers_find_the_dense_solution() -> None:
+    light = _noise(20, 24)
+    unknown = np.zeros((20, 24), bool)
+    unknown[2:7, 3:20] = unknown[12:16, 1:9] = True
+    known = (np.arange(24) > 12) * np.ones((20, 1))
+    system = laplacian.system(light, unknown, known)
+    ranks = banded.order(unknown).ranks
+    assert sorted(ranks) == list(range(len(ranks)))
+    dense = np.linalg.solve(_whole(system), system.right)
+    for solve in (banded.banded_solve, banded.sparse_solve):
+        np.testing.assert_allclose(solve(system, ranks), dense, atol=1e-7)
+
+
+def test_a_ring_is_a_few_times_as_wide_as_its_band() -> None:
+    disc = np.zeros((300, 300), np.uint8)
+    cv2.circle(disc, (150, 150), 110, 1, 8)
+    ring = banded.order(disc > 0)
+    assert ring.entries / len(ring.ranks) < 8 * 9
