@@ -111,13 +111,12 @@ def open_shipped() -> session.Session:
     return session.load((folder / "segment.onnx").read_bytes(), sums["segment.onnx"])
 
 
-def lock(folder: Path) -> None:
-    """Write `models.lock`: the SHA-256 of every model in the folder."""
-    sums = {
-        p.name: hashlib.sha256(p.read_bytes()).hexdigest()
-        for p in sorted(folder.glob("*.onnx"))
-    }
-    (folder / "models.lock").write_text(json.dumps(sums, indent=2) + "\n")
+def lock(model: Path) -> None:
+    """Write a model's SHA-256 to the `models.lock` beside it, and leave the others."""
+    path = model.with_name("models.lock")
+    sums = json.loads(path.read_text()) if path.exists() else {}
+    sums[model.name] = hashlib.sha256(model.read_bytes()).hexdigest()
+    path.write_text(json.dumps(dict(sorted(sums.items())), indent=2) + "\n")
 
 
 def main() -> None:
@@ -134,7 +133,7 @@ def main() -> None:
     if not worst < TOLERANCE:
         raise SystemExit(f"the exported network differs by {worst}; nothing written")
     args.into.write_bytes(model)
-    lock(args.into.parent)
+    lock(args.into)
     print(f"{args.into}: {len(model) / 1e6:.1f} MB, differs by {worst:.2g} at most")
 
 

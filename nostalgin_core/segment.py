@@ -30,8 +30,8 @@ def segment(
     *,
     short_px: int = 416,
     long_px: int = 1344,
-    facade_score: float = 0.35,
-    occluder_score: float = 0.3,
+    facade_score: float = 0.4,
+    occluder_score: float = 0.25,
 ) -> tuple[Instance, ...] | Rejection:
     """Find fronts and what hides them, surest first.
 
