@@ -31,7 +31,7 @@ SmallerMask = Bool[np.ndarray, "h2 w2"]
 MULTIPLE = 8  # the network's sizes
 GUESSED_PX = 2_000_000  # larger images are guessed at this size, to bound the memory
 LOOKED_PX = 250_000  # and the network looks at them at this one
-HALO_PX = 3  # a soft edge this near the hole is mixed with what hides the front
+HALO_PX = 8  # a soft edge this near the hole is mixed with what hides the front
 
 
 def holes(marks: EvidenceMap) -> Mask:
