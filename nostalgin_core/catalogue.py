@@ -5,12 +5,13 @@ Two kinds of list are read, by the names of their columns: the New York archive'
 lot, street, address, width_m, depth_m, side, order, credit). Columns that mean nothing
 here are kept and named in a warning. A row that makes no sense is a rejection that
 names it as a spreadsheet counts, header first. Lengths of a building that is younger
-than its photograph are left out.
+than its photograph are left out. An alternative address on another street is a corner
+lot's second front: the lot's depth is its width there.
 """
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Final
 
@@ -45,6 +46,8 @@ ALIASES: Final[Mapping[str, tuple[str, ...]]] = {
     "order": ("order", "rank"),
     "ring": ("ring",),
     "credit": ("credit", "rights_holder", "collection"),
+    "other_address": ("alternative_building_number",),
+    "other_street": ("alternative_street_name",),
     "built": ("year_built",),
     "taken": ("date", "taken"),
 }
@@ -52,7 +55,6 @@ UNUSED: Final = frozenset(  # the archive's columns that say nothing about place
     {
         *("delete", "borough", "qc", "flagged", "notes", "landmark", "roll_number"),
         *("alternative_block_number", "alternative_lot_number", "zip_code"),
-        *("alternative_building_number", "alternative_street_name"),
         *("complete_address", "condition_hole_punch_deteriorated_tape"),
         *("year_altered1", "year_altered2", "rights", "source_url"),
     }
@@ -110,7 +112,7 @@ def read(
                 Rejection(f"{name} row {number}", "catalogue", reason, detail)
             )
             continue
-        entries.append(entry)
+        entries += [entry, *_round_the_corner(entry, cells)]
         warnings += [f"{name} row {number}: {doubt}" for doubt in doubts]
     return Catalogue(tuple(entries), tuple(rejections), tuple(warnings))
 
@@ -246,6 +248,27 @@ def _entry(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         credit=cells.get("credit", ""),
     )
     return entry, doubts + more
+
+
+def _round_the_corner(entry: Entry, cells: Mapping[str, str]) -> list[Entry]:
+    """Make an entry of a corner lot's other street, if a row names one.
+
+    An alternative with the same house number is but another name of the same street.
+    """
+    street = " ".join(cells.get("other_street", "").split())
+    address = cells.get("other_address", "")
+    same = street.casefold() == entry.street.casefold() or address == entry.address
+    if not street or house_numbers(address) is None or same or entry.side is not None:
+        return []
+    return [
+        replace(
+            entry,
+            street=street,
+            address=address,
+            width_m=entry.depth_m,
+            depth_m=entry.width_m,
+        )
+    ]
 
 
 def _leads_out(photo: str) -> bool:

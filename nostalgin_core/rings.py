@@ -59,7 +59,8 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
             continue
         for number, ring in enumerate(inferred[block]):
             ordered = [in_order(side, law) for side in ring]
-            warnings += [doubt for side in ordered for doubt in disorder(side)]
+            first = min(spot.key for side in ring for spot in side)
+            warnings += [doubt for side in ordered for doubt in disorder(side, first)]
             made += numbered(started(ordered), ring=number)
     return distinct(made), (*warnings, *doubts)
 
@@ -258,13 +259,17 @@ def in_order(side: Sequence[Spot], law: Law) -> list[Spot]:
     return sorted(side, key=place)
 
 
-def disorder(side: Sequence[Spot]) -> Iterable[str]:
-    """Name the neighbours whose lots run against the rest of their side."""
+def disorder(side: Sequence[Spot], first: float) -> Iterable[str]:
+    """Name the neighbours whose lots run against the rest of their side.
+
+    Where the ring's last lot meets its `first`, they always do.
+    """
     keys = [spot.key for spot in side]
     falling = _agreement(keys, [float(place) for place in range(len(side))]) < 0
     for a, b in itertools.pairwise(side):
         against = (a.key < b.key) if falling else (a.key > b.key)
-        if against and a.number is not None and b.number is not None and len(side) > 2:
+        known = a.number is not None and b.number is not None
+        if against and known and len(side) > 2 and first not in (a.key, b.key):
             yield (
                 f"block {a.block}, {a.street}: lots {a.lot} ({a.address}) and {b.lot} "
                 f"({b.address}) stand by house number, against the order of lots"

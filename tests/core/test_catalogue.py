@@ -149,3 +149,21 @@ def test_an_assumed_width_grows_with_the_house_numbers_it_takes() -> None:
     one, three = catalogue.assumed_width("111"), catalogue.assumed_width("108-112")
     assert one == pytest.approx(7.62)
     assert one < three < 3 * one + 0.1
+
+
+CORNER = {
+    "Alternative Building Number": "155",
+    "Alternative Street Name": "West 40 Street",
+}
+
+
+def test_an_alternative_address_is_a_corner_lot_s_second_front() -> None:
+    first, second = catalogue.read([ARCHIVE | CORNER]).entries
+    assert (second.street, second.address) == ("West 40 Street", "155")
+    assert (second.width_m, second.depth_m) == (first.depth_m, first.width_m)
+    assert second.lot == first.lot
+
+
+def test_another_name_of_the_same_street_is_no_second_front() -> None:
+    renamed = CORNER | {"Alternative Building Number": "561-565"}
+    assert len(catalogue.read([ARCHIVE | renamed]).entries) == 1
