@@ -103,6 +103,7 @@ def test_a_click_on_a_building_tells_who_it_is(visit: Visit) -> None:
     assert panel.locator("h2").inner_text() == "115-119 West 1 Street; 2 Second Avenue"
     assert "Lot 1" in panel.inner_text()
     assert "18.0 m (59\u2032 1\u2033)" in panel.inner_text()
+    assert "Where you clicked\nPhotographed" in panel.inner_text()
     image = panel.locator("img").first
     image.evaluate("one => one.decode()")
     assert image.evaluate("one => one.naturalWidth") > 100
@@ -204,6 +205,13 @@ def test_the_address_bar_shares_the_view(
     assert other.page.locator("#legend").is_visible()
     assert other.page.locator("#panel h2").inner_text() == "113 West 1 Street"
     other.page.close()
+
+
+def test_escape_leaves_the_finder_at_once(visit: Visit) -> None:
+    visit.page.keyboard.press("g")
+    visit.page.keyboard.type("west")
+    visit.page.keyboard.press("Escape")
+    assert visit.page.locator("#finder").is_hidden()
 
 
 def test_a_building_is_found_with_keys_alone(visit: Visit) -> None:
