@@ -1,0 +1,5 @@
+"""The paper's tables and public benchmarks, on data that is given.
+
+The measures are pure and live in the core; here are the readers of data sets and the
+loops over them.
+"""
