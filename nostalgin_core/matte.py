@@ -3,11 +3,13 @@
 The network's outlines are right to a few pixels; closed-form matting moves them to the
 edges that the camera saw. Three kinds of boundary are told apart:
 
-- a front against the sky, the street or a wall is matted along its amodal outline;
-- a front against its neighbour: the neighbour's sure region is this one's background,
-  and where the two still overlap they share the pixel, so alphas add up to 1 at most;
-- a front against what hides it: all occluders are matted together, once, and then
-  visible alpha = alpha of the whole front * (1 - alpha of the occluders).
+- all fronts together against the sky, the street or a wall: matted once, along their
+  common amodal outline;
+- a front against its neighbour: matted in a narrow seam, in which they share the pixel,
+  so that alphas of neighbours add up to what the fronts have in common;
+- a front against what hides it: all occluders are matted together, once.
+
+    visible alpha = alpha of all fronts * this front's share * (1 - alpha of occluders)
 """
 
 from collections.abc import Callable, Sequence
@@ -21,7 +23,7 @@ from jaxtyping import Float32
 from nostalgin_core import closed_form, facade
 from nostalgin_core.arrays import Gray, Mask, Probability
 from nostalgin_core.laplacian import Belief
-from nostalgin_core.records import Facade, Instance, Matted, Occluder, Photo, Rejection
+from nostalgin_core.records import Instance, Matted, Occluder, Photo, Rejection
 from nostalgin_core.trimap import (
     BACKGROUND,
     FOREGROUND,
@@ -33,6 +35,8 @@ from nostalgin_core.trimap import (
 
 EPSILON: Final = 1e-5  # film grain has a standard deviation of 0.003 to 0.01
 BELIEF: Final = 0.02  # in the network, where the image shows no edge
+_HIDDEN: Final = 0.95  # of a pixel: as good as wholly hidden
+_FAR: Final = 1e6  # px: farther than any photo is wide
 _MARGIN_PX: Final = 4  # round a band: a window, and the known pixels beside it
 
 _Soft = Float32[np.ndarray, "h w"]
@@ -71,22 +75,17 @@ def matte(
     solve = partial(soft, light, epsilon=epsilon, belief=belief)
     hiders = [i for i in instances if i.category != "facade"]
     wholes = [front.amodal[cut] for front in fronts]
-    near = grown(np.any(wholes, axis=0), facade_px[1])
+    built = np.any(wholes, axis=0)
+    near = grown(built, facade_px[1])
     hidden = _hidden(solve, highest(hiders, shape)[cut], near, least, occluder_px)
-    alphas = []
-    for i, front in enumerate(fronts):
-        others = np.any([np.zeros_like(near), *wholes[:i], *wholes[i + 1 :]], axis=0)
-        likely = highest([_source(front, instances, least)], shape)[cut]
-        known, likely = outline(wholes[i], likely, others, px=facade_px)
-        # What is hidden anyway is not asked: the outline has the last word there.
-        asked = (known != UNKNOWN) | (hidden < 0.95)
-        sure = np.where(wholes[i], FOREGROUND, BACKGROUND).astype(np.uint8)
-        alphas.append(solve(np.where(asked, known, sure), likely))
-    share = (1.0 - hidden) / np.maximum(np.sum(alphas, axis=0), 1.0)
+    likely = highest([i for i in instances if i.category == "facade"], shape)[cut]
+    common = solve(*outline(built, likely, hidden, px=facade_px))
+    seen = common * (1.0 - hidden)
+    shares = _shares(solve, wholes, seen, facade_px[0])
     return Matted(
         tuple(
-            replace(front, alpha=_placed(alpha * share, cut, shape))
-            for front, alpha in zip(fronts, alphas, strict=True)
+            replace(front, alpha=_placed(seen * share, cut, shape))
+            for front, share in zip(fronts, shares, strict=True)
         ),
         tuple(_occluder(i, _placed(hidden, cut, shape), least) for i in hiders),
     )
@@ -133,32 +132,39 @@ def _hidden(
 
 
 def outline(
-    whole: Mask, likely: _Soft, others: Mask, *, px: tuple[float, float]
+    whole: Mask, likely: _Soft, hidden: _Soft, *, px: tuple[float, float]
 ) -> tuple[Trimap, _Soft]:
-    """Draw a front's trimap along its amodal outline, and mend its probability.
+    """Draw a trimap along an amodal outline, and mend the network's probability.
 
-    The probability serves where it agrees with the outline, at which neighbours were
-    told apart. What is surely a neighbour's is background.
+    The probability serves where it agrees with the outline. What is hidden anyway is
+    not asked: the outline has the last word there.
     """
     agreed = np.where(whole, np.maximum(likely, 0.5), np.minimum(likely, 0.49))
     agreed = agreed.astype(np.float32)
     known = trimap(agreed, least_px=px[0], most_px=px[1])
-    known[signed_distance(others) > px[0]] = BACKGROUND
-    return known, agreed
+    sure = np.where(whole, FOREGROUND, BACKGROUND).astype(np.uint8)
+    return np.where(hidden < _HIDDEN, known, sure), agreed
 
 
-def _source(front: Facade, instances: Sequence[Instance], least: float) -> Instance:
-    """Find the instance that a front was made from: the one that covers most of it."""
-    facades = [i for i in instances if i.category == "facade"]
+def _shares(
+    solve: _Solve, wholes: Sequence[Mask], seen: _Soft, seam_px: float
+) -> list[_Soft]:
+    """Share each pixel among the fronts: the nearest takes it, but for matted seams.
 
-    def common(instance: Instance) -> float:
-        x0, y0, x1, y1 = instance.box
-        claimed = instance.probability > least
-        both = np.count_nonzero(claimed & front.mask[y0:y1, x0:x1])
-        either = np.count_nonzero(claimed) + np.count_nonzero(front.mask) - both
-        return both / max(1, either)
-
-    return max(facades, key=common)
+    Half the difference of two fronts' depths is the distance to the middle between
+    them, wherever they touch, overlap or leave a gap.
+    """
+    depths = np.stack([signed_distance(whole) for whole in wholes]).clip(-_FAR, _FAR)
+    shares = []
+    for i, depth in enumerate(depths):
+        other = np.max(np.delete(depths, i, axis=0), axis=0, initial=-_FAR)
+        middle = np.clip((depth - other) / 2, -seam_px, seam_px)
+        known = np.where(middle >= 0, FOREGROUND, BACKGROUND).astype(np.uint8)
+        known[(np.abs(middle) < seam_px) & (seen > 1 - _HIDDEN)] = UNKNOWN
+        believed = (0.5 + 0.5 * middle / seam_px).astype(np.float32)
+        shares.append(solve(known, believed))
+    total = np.maximum(np.sum(shares, axis=0), 1e-3)
+    return [share / total for share in shares]
 
 
 def _occluder(instance: Instance, hidden: _Soft, least: float) -> Occluder:
