@@ -10,7 +10,7 @@ points before and after it, `t_alpha` the turn from which a point is not linear.
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -351,6 +351,7 @@ def _fit_runs(
     return centre, np.column_stack([cosine, sine]), stray
 
 
+@runtime_checkable
 class Detector(Protocol):
     """Finds the lines of an image, once for each pair of settings."""
 

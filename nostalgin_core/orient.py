@@ -205,7 +205,7 @@ def borrow(world: upright.Upright, i: int, sides: Lines) -> upright.Upright | No
     The borrowed azimuth counts as uncertain by half of `OUTLINE_DEG`.
     """
     sd = np.sqrt(np.diag(world.covariance))[3:]
-    known = (sd < np.radians(WELL_KNOWN_DEG)) & (world.support[1:] >= LEAST_LINES)
+    known = (sd < np.radians(OUTLINE_DEG / 2)) & (world.support[1:] >= LEAST_LINES)
     theta = world.parameters[3:][known]
     if not len(theta):
         return None

@@ -87,12 +87,3 @@ def photograph(
     noisy = np.clip(cv2.GaussianBlur(small, (0, 0), 0.6) + grain, 0, 255)
     photo = Photo(f"{seed:016x}", noisy.astype(np.uint8), frame)
     return Painted(photo, Matted(tuple(facades), ()), quads, list(aspects), focal)
-
-
-def worst_angle_deg(quad: np.ndarray, photo_from_elevation: np.ndarray) -> float:
-    """Measure how far from 90 degrees a true quad's corners are when straightened."""
-    flat = homography.apply(np.linalg.inv(photo_from_elevation), quad)
-    side = np.roll(flat, -1, axis=0) - flat
-    side /= np.linalg.norm(side, axis=1, keepdims=True)
-    cosines = np.abs(np.sum(side * np.roll(side, 1, axis=0), axis=1))
-    return float(np.degrees(np.arcsin(np.minimum(cosines, 1))).max())

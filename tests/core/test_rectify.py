@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from nostalgin_core import evidence, rectify
+from nostalgin_core.measure_rectification import worst_angle_deg
 from nostalgin_core.records import Elevation, Matted, Photo
-from tests.painted_front import Painted, photograph, worst_angle_deg
+from tests.painted_front import Painted, photograph
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +83,49 @@ def test_a_blank_wall_is_rejected_with_a_reason(corner: Painted) -> None:
         "too few lines"
     ] * 2
     assert [r.facade for r in results if not isinstance(r, Elevation)] == [0, 1]
+
+
+def stripped(corner: Painted, index: int) -> Photo:
+    """Wash a front's lines out, but for those of its outline."""
+    image = corner.photo.image.copy()
+    seen = corner.matted.facades[index].mask
+    image[seen] = 150
+    return replace(corner.photo, image=image)
+
+
+def test_a_front_without_lines_borrows_its_neighbours_direction(
+    corner: Painted,
+) -> None:
+    left, right = corner.matted.facades
+    hidden_right = replace(right, alpha=np.zeros_like(right.alpha))
+    one, other = rectify.rectify(
+        stripped(corner, 1), replace(corner.matted, facades=(left, hidden_right))
+    )
+    assert isinstance(one, Elevation)
+    assert one.method == "two vanishing points"
+    assert isinstance(other, Elevation)
+    assert other.method == "a neighbour's direction"
+    assert worst_angle_deg(corner.quads[1], other.photo_from_elevation) < 3
+    assert other.vanishing_sd_deg[0] > 2 * one.vanishing_sd_deg[0]
+
+
+def test_a_speck_is_too_small(corner: Painted) -> None:
+    left = corner.matted.facades[0]
+    speck = np.zeros_like(left.mask)
+    speck[200:210, 150:400] = True
+    tiny = replace(left, mask=speck, amodal=speck, alpha=speck.astype(np.float32))
+    results = rectify.rectify(
+        corner.photo, replace(corner.matted, facades=(*corner.matted.facades, tiny))
+    )
+    assert not results[2]
+
+
+def test_one_level_front_leaves_the_focal_length_untold() -> None:
+    level = photograph(azimuths_deg=(0.0,), aspects=(0.8,), tilt_deg=0.0, roll_deg=0.0)
+    (result,) = rectify.rectify(level.photo, level.matted)
+    assert isinstance(result, Elevation)
+    assert result.focal_px is None
+    assert result.aspect == pytest.approx(0.8, rel=0.03)
 
 
 def test_a_photo_without_facades_gives_nothing(corner: Painted) -> None:

@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+
+from nostalgin_core import homography, measure_rectification
+
+CAMERA = np.array([[700.0, 0.0, 320.0], [0.0, 700.0, 240.0], [0.0, 0.0, 1.0]])
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+def test_true_points_err_by_nothing_in_any_order_and_sign() -> None:
+    points = np.eye(3) @ CAMERA.T
+    shuffled = points[[2, 0, 1]] * [[-1.0], [3.0], [1.0]]
+    errors = measure_rectification.direction_errors_deg(shuffled, np.eye(3), CAMERA)
+    np.testing.assert_allclose(errors, 0, atol=1e-6)
+
+
+def test_a_turned_direction_errs_by_its_turn() -> None:
+    turn = np.radians(7)
+    ray = np.array([[np.cos(turn), 0.0, np.sin(turn)]])
+    errors = measure_rectification.direction_errors_deg(
+        ray @ CAMERA.T, np.array([[1.0, 0.0, 0.0]]), CAMERA
+    )
+    assert errors[0] == pytest.approx(7.0)
+
+
+def test_what_was_not_found_errs_by_ninety_degrees() -> None:
+    one = CAMERA[:, :1].T
+    errors = measure_rectification.direction_errors_deg(one, np.eye(3), CAMERA)
+    assert sorted(errors.tolist()) == pytest.approx([0.0, 90.0, 90.0])
+    none = measure_rectification.direction_errors_deg(None, np.eye(3), CAMERA)
+    assert none.tolist() == [90.0] * 3
+
+
+def test_a_shifted_horizon_errs_by_its_shift() -> None:
+    true, found = np.array([0.0, 1.0, -200.0]), np.array([0.0, -2.0, 448.0])
+    assert measure_rectification.horizon_error(
+        found, true, (480, 640)
+    ) == pytest.approx(0.05)
+
+
+def test_the_area_is_full_for_no_error_and_nothing_beyond_reach() -> None:
+    area = measure_rectification.area_under_curve
+    assert area(np.zeros(4)) == 100
+    assert area(np.full(4, 0.3)) == 0
+    assert area(np.array([0.0, 0.25, 0.125, 0.125])) == pytest.approx(50)
+
+
+def test_the_right_homography_leaves_right_angles() -> None:
+    quad = np.array([[10.0, 20.0], [90.0, 5.0], [100.0, 95.0], [5.0, 80.0]])
+    right = homography.between(SQUARE, quad)
+    assert measure_rectification.worst_angle_deg(quad, right) < 1e-5
+    wrong = measure_rectification.worst_angle_deg(quad, np.eye(3))
+    assert wrong == pytest.approx(15.383, abs=0.001)  # top left
+
+
+def test_a_torn_quad_errs_by_ninety_degrees() -> None:
+    quad = np.array([[10.0, 20.0], [90.0, 5.0], [100.0, 95.0], [5.0, 80.0]])
+    torn = np.linalg.inv(np.array([[1.0, 0, 0], [0, 1.0, 0], [1.0, 0, -50.0]]))
+    assert measure_rectification.worst_angle_deg(quad, torn) == 90.0
+
+
+def test_corner_error_is_a_share_of_the_diagonal() -> None:
+    error = measure_rectification.corner_error(SQUARE + np.array([0.1, 0.0]), SQUARE)
+    assert error == pytest.approx(0.1 / np.sqrt(2))
