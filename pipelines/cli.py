@@ -57,6 +57,12 @@ def fail(message: str) -> typer.Exit:
     return typer.Exit(FAILED)
 
 
+def unwritable(folder: str | Path, problem: OSError) -> typer.Exit:
+    """Say that results could not be put where they were wanted."""
+    why = problem.strerror or str(problem)
+    return fail(f"{folder}: {why}; name a folder that can be written to")
+
+
 EXPLAIN_EXAMPLES = """
 Examples:
 
@@ -99,6 +105,8 @@ def explain_command(
         raise fail(f"{photo}: {problem}") from problem
     except shelf.Unlocked as problem:
         raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(out, problem) from problem
     targets = sum(one["target"] for one in report["facades"])
     typer.echo(
         f"{len(report['facades'])} facades ({targets} target), "
@@ -147,6 +155,8 @@ def index_command(
         made = index(photos, catalogue, city, blocks=block or (), credit=credit)
     except Nothing as problem:
         raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(city, problem) from problem
     for warning in made.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
     for one in made.rejections:

@@ -150,6 +150,7 @@ def test_bad_files_are_rejected_by_name_and_harm_nothing(
     city: Path, tmp_path: Path
 ) -> None:
     other = copied(city, tmp_path)
+    shutil.copytree(city / "artifacts", other / "artifacts")
     for name, data in BAD_FILES.items():
         (city.parent / "photos" / name).write_bytes(data)
     rows = pq.read_table(other / manifest.PARQUET).to_pylist()

@@ -63,6 +63,16 @@ def test_an_unreadable_photo_ends_with_1_and_without_a_traceback(
     assert "Traceback" not in result.output
 
 
+def test_a_folder_that_can_not_be_written_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / "5_1.jpg").write_bytes(b"x")
+    result = nostalgin("index", tmp_path / "photos", "-o", tmp_path / "file" / "city")
+    assert result.exit_code == 1
+    assert "file/city" in result.output
+    assert "Traceback" not in result.output
+
+
 def test_a_folder_of_models_without_a_lock_is_refused(tmp_path: Path) -> None:
     photo = tmp_path / "photo.png"
     photo.write_bytes(painted.photo())
