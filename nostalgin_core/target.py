@@ -19,7 +19,7 @@ from jaxtyping import Float
 from nostalgin_core.arrays import Mask
 from nostalgin_core.records import Box
 
-WEIGHTS = np.array([-0.76, -3.28, -3.40, 1.42, 0.89, -1.27])
+WEIGHTS = np.array([-0.12, -3.72, -3.79, 1.09, 0.33, -0.60])
 """For 1, distance to the middle, distance to the board, area, score, cut."""
 INNER = np.array([0.1, 0.5, 0.9])  # shares of a front's pixels, from the left
 EDGE_PX = 6  # outlines are no better
