@@ -14,6 +14,7 @@ from jaxtyping import Float, Float32
 
 from nostalgin_core import banded, laplacian
 from nostalgin_core.arrays import Gray, Mask
+from nostalgin_core.banded import Order
 from nostalgin_core.laplacian import EPSILON, PAD, Belief
 from nostalgin_core.trimap import BACKGROUND, FOREGROUND, UNKNOWN, Trimap
 
@@ -62,28 +63,33 @@ def _solve(
 ) -> _Light:
     unknown = (trimap != BACKGROUND) & (trimap != FOREGROUND)
     result = (trimap == FOREGROUND).astype(np.float32)
-    if banded.order(unknown).entries > entries:
+    numbering = banded.order(unknown)
+    if numbering.entries > entries:
         guess = _from_half(light, trimap, prior, epsilon, entries)
         unsettled = ((guess > _CRISP) & (guess < 1 - _CRISP)).astype(np.uint8)
         result[unknown] = np.round(guess[unknown])
         unknown &= cv2.dilate(unsettled, np.ones((5, 5), np.uint8)) > 0
         result[unknown] = guess[unknown]
-    for part in _parts(unknown, entries):
-        result[part] = _exactly(light, part, result, prior, epsilon)
+        numbering = banded.order(unknown)
+    for part, ranked in _parts(unknown, numbering, entries):
+        result[part] = _exactly(
+            light, part, ranked, result, prior=prior, epsilon=epsilon
+        )
     return result
 
 
-def _parts(unknown: Mask, entries: int) -> Iterator[Mask]:
+def _parts(
+    unknown: Mask, numbering: Order, entries: int
+) -> Iterator[tuple[Mask, Order]]:
     """Split a band until each part's factor is small enough, with some overlap.
 
     The parts are solved one after the other, each with the others' alpha as it is: what
     the coarse solution missed is local.
     """
-    numbering = banded.order(unknown)
     places = np.nonzero(unknown)
     extents = [int(np.ptp(axis)) if len(axis) else 0 for axis in places]
     if numbering.entries <= entries or max(extents) < 8 * _OVERLAP_PX:
-        yield unknown
+        yield unknown, numbering
         return
     axis = int(np.argmax(extents))
     middle = int(np.median(places[axis]))
@@ -91,17 +97,22 @@ def _parts(unknown: Mask, entries: int) -> Iterator[Mask]:
         half = np.zeros_like(unknown)
         cut = (side, slice(None)) if axis == 0 else (slice(None), side)
         half[cut] = unknown[cut]
-        yield from _parts(half, entries)
+        yield from _parts(half, banded.order(half), entries)
 
 
 def _exactly(
     light: _Light,
     unknown: Mask,
+    numbering: Order,
     known: _Light,
+    *,
     prior: Belief | None,
     epsilon: float,
 ) -> Float[np.ndarray, " n"]:
-    """Solve for the unknown pixels at once."""
+    """Solve for the unknown pixels at once, in their bounding box.
+
+    Cutting it out changes neither the order of reading nor, so, the numbering.
+    """
     if not unknown.any():
         return np.empty(0)
     y, x = (np.flatnonzero(unknown.any(axis=axis)) for axis in (1, 0))
@@ -110,7 +121,7 @@ def _exactly(
     equations = laplacian.system(
         light[part], unknown[part], known[part], prior=here, epsilon=epsilon
     )
-    return banded.solve(equations, banded.order(unknown[part]))
+    return banded.solve(equations, numbering)
 
 
 def _from_half(
