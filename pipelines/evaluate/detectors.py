@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import lines
+from nostalgin_core import contours
 from nostalgin_core.arrays import Gray
 
 SHORTEST_PX = 8.0  # as for ours
@@ -22,8 +22,8 @@ def hough(
     image: Gray, /, *settings: tuple[int, float]
 ) -> tuple[Float[np.ndarray, "_ 4"], ...]:
     """Find lines with OpenCV's probabilistic Hough transform on our own edges."""
-    even = lines.even_out(image)
-    mask, _ = lines.edges(even, *lines.canny_thresholds(even))
+    even = contours.even_out(image)
+    mask, _ = contours.edges(even, *contours.canny_thresholds(even))
     found = cv2.HoughLinesP(
         mask.astype(np.uint8) * 255, 1, np.pi / 360, 20, minLineLength=12, maxLineGap=2
     )

@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from nostalgin_core import lines, vanish
+from nostalgin_core.contours import Contours
 
 SQUARE = np.array([[60.3, 50.6], [240.7, 70.2], [225.1, 230.4], [45.9, 215.3]])
 
@@ -67,55 +68,14 @@ def test_edges_outside_the_mask_are_not_followed() -> None:
     assert found[:, [0, 2]].min() > 148
 
 
-def test_thresholds_surround_the_median() -> None:
-    image = np.full((10, 10), 100, np.uint8)
-    assert lines.canny_thresholds(image) == (67, 133)
-    assert lines.canny_thresholds(np.zeros((10, 10), np.uint8)) == (0, 1)
-    assert lines.canny_thresholds(np.full((4, 4), 250, np.uint8))[1] == 255
-
-
-def walked(mask: np.ndarray) -> lines.Contours:
-    y, x = np.nonzero(mask)
-    return lines.link(mask, np.column_stack([x, y]).astype(np.float64), shortest=3)
-
-
-def test_linked_points_touch_their_neighbours() -> None:
-    image = painted(SQUARE)
-    mask, points = lines.edges(image, 60, 120)
-    contours = lines.link(mask, points)
-    same = np.diff(contours.contour) == 0
-    steps = np.abs(np.diff(contours.points, axis=0)).max(axis=1)
-    assert same.sum() > 500
-    assert np.all(steps[same] < 1 + 2 * 0.7 + 1e-9)
-
-
-@pytest.mark.parametrize("closed", [True, False])
-def test_a_path_is_one_contour_with_every_point_once(*, closed: bool) -> None:
-    mask = np.zeros((20, 20), bool)
-    mask[5, 5:15] = mask[14, 5:15] = mask[5:15, 5] = mask[5:15, 14] = True
-    if not closed:
-        mask[5, 9] = False
-    contours = walked(mask)
-    assert contours.contour.max() == 0
-    assert len(contours.points) == mask.sum()
-    assert len(np.unique(contours.points, axis=0)) == mask.sum()
-
-
-def test_a_crossing_is_cut_into_its_arms() -> None:
-    mask = np.zeros((21, 21), bool)
-    mask[10, 2:19] = mask[2:19, 10] = True
-    contours = walked(mask)
-    assert contours.contour.max() == 3
-
-
-def on_line(bend_deg: float, length: int = 80) -> lines.Contours:
+def on_line(bend_deg: float, length: int = 80) -> Contours:
     """Make a contour that bends once, at its middle."""
     half = np.arange(length // 2, dtype=np.float64)
     angle = np.radians(bend_deg)
     first = np.column_stack([half, np.zeros_like(half)])
     second = first[-1] + (half + 1)[:, None] * [np.cos(angle), np.sin(angle)]
     points = np.vstack([first, second])
-    return lines.Contours(points, np.zeros(len(points), np.intp))
+    return Contours(points, np.zeros(len(points), np.intp))
 
 
 def test_a_straight_contour_is_linear_throughout() -> None:
@@ -131,7 +91,7 @@ def test_a_corner_is_not_linear_and_its_arms_are() -> None:
 
 def test_the_second_derivatives_mirror_each_other() -> None:
     contours = on_line(40.0)
-    backwards = lines.Contours(contours.points[::-1].copy(), contours.contour)
+    backwards = Contours(contours.points[::-1].copy(), contours.contour)
     left, right = lines.turns(contours, lines.directions(contours), 8)
     left_back, right_back = lines.turns(backwards, lines.directions(backwards), 8)
     np.testing.assert_allclose(left, right_back[::-1], atol=1e-9)
@@ -165,7 +125,7 @@ def test_the_labels_are_those_of_a_walk_along_the_contour(seed: int) -> None:
     rng = np.random.default_rng(seed)
     turning = np.cumsum(rng.normal(0, 0.12, 120) * (rng.random(120) < 0.3))
     points = np.cumsum(np.column_stack([np.cos(turning), np.sin(turning)]), axis=0)
-    contours = lines.Contours(points, np.zeros(120, np.intp))
+    contours = Contours(points, np.zeros(120, np.intp))
     left, right = lines.turns(contours, lines.directions(contours), 8)
     expected = walk(left, right, 8, 9.0)
     np.testing.assert_array_equal(lines.linear(contours, 8, 9.0), expected)
