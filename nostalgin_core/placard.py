@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
+from nostalgin_core import spacing
 from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Box, Instance, Photo, Placard, Rejection
 
@@ -55,7 +56,7 @@ def read(photo: Photo, board: Instance | None, ocr: Ocr) -> Placard | Rejection:
         for line in lines(pieces):
             found = _placard(line)
             # A range of house numbers on a sign is no board: there, ask for the letter.
-            if found is not None and (found.borough or box != lower[0]):
+            if found is not None and (found.borough or _on(board, found)):
                 return found
         seen += [piece.text for piece in pieces]
     return Rejection(
@@ -87,6 +88,7 @@ _TAIL: Final = rf"(?P<lot>\d{{1,4}}) ?(?P<borough>[{BOROUGHS}])?"
 _WHOLE: Final = re.compile(rf"(?P<block>\d{{2,5}}) ?[A-Z]? ?(?:- ?)+{_TAIL}")
 _SPLIT: Final = re.compile(rf"(?P<block>\d{{2,5}}) {_TAIL}")  # the dash went unseen
 _DASHES: Final = re.compile(r"[-_~\u2010-\u2015\u2212\uff0d\u4e00=]+")
+_RUN_TOGETHER: Final = re.compile(rf"\d{{4,}}[{BOROUGHS}]?")
 _LIKE_DIGITS: Final = str.maketrans("OQDIL|!", "0001111")
 
 
@@ -162,6 +164,16 @@ def _placard(line: Sequence[Piece]) -> Placard | None:
     )
 
 
+def _on(board: Instance | None, found: Placard) -> bool:
+    """Tell whether a number stands where the network saw a board, or nearly there."""
+    if board is None:
+        return False
+    x0, y0, x1, y1 = board.box
+    x, y = np.array(found.box).mean(axis=0)
+    w, h = x1 - x0, y1 - y0
+    return bool(x0 - w / 2 <= x <= x1 + w / 2 and y0 - h / 2 <= y <= y1 + h / 2)
+
+
 def _clockwise(corners: np.ndarray) -> np.ndarray:
     """Order four corners from the top left on, clockwise as seen."""
     off = corners - corners.mean(axis=0)
@@ -193,7 +205,10 @@ def _pieces(image: Gray, box: Box, scale: float, ocr: Ocr) -> list[Piece]:
         return []
     large = cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
     # Pixel centres lie at whole numbers: the first pixel's edge is at -0.5.
-    return [
-        Piece((np.array(corners, float) + 0.5) / scale - 0.5 + box[:2], text, score)
-        for corners, text, score in ocr(large)
-    ]
+    pieces = []
+    for found, text, score in ocr(large):
+        corners = np.array(found, float)
+        fused = _RUN_TOGETHER.fullmatch(text)
+        said = spacing.parted(large, corners, text) if fused else text
+        pieces.append(Piece((corners + 0.5) / scale - 0.5 + box[:2], said, score))
+    return pieces
