@@ -68,12 +68,13 @@ def agree(scores: Tensor, *, stride: int) -> Tensor:
         border[8 - 2 * foreground : 10 - 2 * foreground] = [stride, stride]
         border[8 - 2 * background : 10 - 2 * background] = [1, 1]
         padded = F.pad(scores, border)
-        scores = 0
+        parts = []
         for shift in (0, 1, 2):
             window = [slice(None)] * 5
             window[foreground] = slice(shift * stride, shift * stride + n)
             window[background] = slice(shift, shift + k)
-            scores = scores + padded[tuple(window)]
+            parts.append(padded[tuple(window)])
+        scores = parts[0] + parts[1] + parts[2]
     return scores
 
 

@@ -45,7 +45,7 @@ class Gated(nn.Module):
         padding = rate * (kernel - 1) // 2
         self.conv = nn.Conv2d(inner, 2 * outer, kernel, stride, padding, rate)
         nn.init.orthogonal_(self.conv.weight, gain=1.3)
-        nn.init.zeros_(self.conv.bias)
+        nn.init.zeros_(self.conv.get_parameter("bias"))
 
     def forward(self, x: Tensor) -> Tensor:
         """Filter and gate."""
@@ -88,7 +88,7 @@ def _up(inner: int, width: int) -> nn.Sequential:
     """From features at a quarter of the size to what is to be added to the guess."""
     last = nn.Conv2d(max(width // 2, 4), 1, 3, padding=1)
     nn.init.normal_(last.weight, std=0.01)  # a fresh network answers with the guess
-    nn.init.zeros_(last.bias)
+    nn.init.zeros_(last.get_parameter("bias"))
     return nn.Sequential(
         Gated(inner, 4 * width),
         Gated(4 * width, 4 * width),

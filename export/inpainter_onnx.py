@@ -73,7 +73,7 @@ def export(
         torch.onnx.export(
             Shipped(generator.eval(), strips=strips),
             example,
-            written,
+            written,  # pyright: ignore[reportArgumentType] - it takes a buffer
             input_names=names,
             output_names=["filled"],
             dynamic_axes=dict.fromkeys([*names, "filled"], size),

@@ -80,13 +80,25 @@ def _painted(shape: tuple[int, int], polygons: list[list[list[float]]]) -> Mask:
     return canvas > 0
 
 
+def read(path: Path) -> Gray:
+    """Read a photograph in gray.
+
+    Raises:
+        ValueError: if it is none.
+    """
+    image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    if image is None:
+        raise ValueError(f"{path} is no picture")
+    return image.astype(np.uint8, copy=False)
+
+
 def fronts(data: Path, folder: str) -> Iterator[Sheet]:
     """Straighten every labelled front of a folder, far rows and slivers left out."""
     grow = np.ones((2 * OUTLINE_PX + 1,) * 2, np.uint8)
     for path in sorted((data / folder / "labels").glob("*.json")):
         # A tax photograph's file name begins with the archive's own prefix.
         (file,) = (data / folder / "photos").glob(f"*{path.stem}.jpg")
-        photo = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
+        photo = read(file)
         objects = json.loads(path.read_text())["objects"]
         others = [o["polygon"] for o in objects if o["category"] != "facade"]
         hidden = cv2.dilate(_painted(photo.shape, others).astype(np.uint8), grow) > 0
@@ -106,7 +118,7 @@ def fronts(data: Path, folder: str) -> Iterator[Sheet]:
 def plain(data: Path, folder: str) -> Iterator[Sheet]:
     """Read photographs as they are, in gray, at most `LARGEST_PX` long."""
     for path in sorted((data / folder).glob("*.jpg")):
-        image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+        image = read(path)
         shrink = min(1.0, LARGEST_PX / max(image.shape))
         if shrink < 1.0:
             image = cv2.resize(

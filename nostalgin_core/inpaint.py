@@ -123,7 +123,7 @@ def whole(elevation: Elevation, network: Network) -> Elevation:
     def everything(hole: Mask) -> list[Slice]:
         h, w = hole.shape
         box = Box(0, 0, w, h)
-        return [Slice(box, box, (False,) * 4)]
+        return [Slice(box, box, (False, False, False, False))]
 
     return _filled(elevation, network, everything)
 

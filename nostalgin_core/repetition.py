@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
-from scipy import fft, ndimage
+from scipy import ndimage
 
 from nostalgin_core.arrays import Mask
 from nostalgin_core.records import Box
@@ -61,13 +61,13 @@ def autocorrelation(values: Values, known: Mask) -> Spread:
     are too few.
     """
     h, w = values.shape
-    shape = [fft.next_fast_len(2 * n, real=True) for n in (h, w)]
+    shape = [cv2.getOptimalDFTSize(2 * n) for n in (h, w)]
     v, v2, m = (
-        fft.rfft2(a.astype(np.float32), shape) for a in (values, values**2, known)
+        np.fft.rfft2(a.astype(np.float32), shape) for a in (values, values**2, known)
     )
 
     def spread(product: np.ndarray) -> Spread:
-        whole = fft.irfft2(product, shape)
+        whole = np.fft.irfft2(product, shape)
         return np.roll(whole, (h - 1, w - 1), (0, 1))[: 2 * h - 1, : 2 * w - 1]
 
     overlap = spread(m.conj() * m)
@@ -198,7 +198,8 @@ def copy(values: Values, known: Mask, within: Box) -> tuple[Half, Half]:
         weight, agreed, lacking = (
             cv2.remap(
                 np.asarray(a, np.float32),
-                *at,
+                at[0],
+                at[1],
                 cv2.INTER_LINEAR,
                 borderMode=cv2.BORDER_REPLICATE,
             )
@@ -220,8 +221,8 @@ def guess(values: Values, hole: Mask) -> Values:
     made = fill(values, hole)
     if not hole.any():
         return made
-    rows, columns = hole.any(1).nonzero()[0], hole.any(0).nonzero()[0]
-    tight = Box(columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)
+    rows, columns = (np.flatnonzero(hole.any(axis=a)) for a in (1, 0))
+    tight = Box(*(int(n) for n in (columns[0], rows[0], columns[-1] + 1, rows[-1] + 1)))
     box = grown(tight, BAND_PX, hole.shape)
     copied, trust = copy(np.where(hole, 0, values).astype(np.float32), ~hole, box)
     window = np.s_[box.y0 : box.y1, box.x0 : box.x1]

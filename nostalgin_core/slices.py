@@ -63,7 +63,7 @@ def merged(boxes: list[Box]) -> list[Box]:
 def bounds(hole: Mask, within: Box) -> Box | None:
     """Find the smallest box of what is hidden inside another box."""
     part = hole[within.y0 : within.y1, within.x0 : within.x1]
-    rows, columns = part.any(1).nonzero()[0], part.any(0).nonzero()[0]
+    rows, columns = (np.flatnonzero(part.any(axis=a)) for a in (1, 0))
     if not len(rows):
         return None
     return Box(
@@ -76,7 +76,8 @@ def bounds(hole: Mask, within: Box) -> Box | None:
 
 def parts(hole: Mask, *, context: int = CONTEXT_PX) -> list[Box]:
     """Box every part of the hole with its context, overlapping boxes joined."""
-    labels, _ = ndimage.label(hole)
+    labels = np.empty(hole.shape, np.int32)
+    ndimage.label(hole, output=labels)
     found = ndimage.find_objects(labels)
     boxes = [Box(x.start, y.start, x.stop, y.stop) for y, x in found]
     return merged([grown(box, context, hole.shape) for box in boxes])

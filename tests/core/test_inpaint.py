@@ -1,10 +1,11 @@
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from nostalgin_core import evidence
-from nostalgin_core.inpaint import holes, inpaint, low_memory, whole
+from nostalgin_core.inpaint import GUESSED_PX, holes, inpaint, low_memory, whole
 from nostalgin_core.records import Box, Elevation
 from nostalgin_core.slices import CHUNK_PX, merged, slices
 
@@ -162,6 +163,17 @@ def test_merged_boxes_do_not_overlap_and_cover_what_they_were() -> None:
 def test_a_chunk_without_room_is_a_mistake() -> None:
     with pytest.raises(ValueError, match="no room"):
         slices(np.ones((10, 10), bool), context=200)
+
+
+def test_memory_beyond_the_guess_grows_by_some_bytes_a_texel() -> None:
+    marks = marked(3000, 3000, Box(1000, 1000, 1100, 1200))
+    given = elevation(np.full((3000, 3000), 90, np.uint8), marks)
+    tracemalloc.start()
+    low_memory(given, obedient)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # 100 bytes a texel of the guess, whose size is bounded, and 16 of the image.
+    assert peak < 100 * GUESSED_PX + 16 * marks.size
 
 
 def test_soft_edges_beside_the_hole_are_not_looked_at() -> None:
