@@ -56,8 +56,13 @@ def board(instances: tuple[Instance, ...]) -> Instance | None:
     return max(boards, key=lambda one: one.score, default=None)
 
 
-def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, Any]]:
+def steps(
+    data: bytes, networks: Networks, *, name: str, every: bool = True
+) -> Iterator[tuple[str, Any]]:
     """Yield each stage's word and its result, and end with a photo's rejection.
+
+    Unless `every` facade is wanted, only the targets are inpainted, which is the
+    costliest stage; all of them where no target has an elevation.
 
     A caller that wants to know what a stage costs looks at its own clock between two
     results. A placard that can't be read stops nothing.
@@ -83,7 +88,9 @@ def steps(data: bytes, networks: Networks, *, name: str) -> Iterator[tuple[str, 
     rectified = tuple(map(rounded, rectify.rectify(picture, matted)))
     yield "rectify", rectified
     views = [one for one in rectified if isinstance(one, Elevation)]
-    yield "inpaint", tuple(inpaint.inpaint(one, networks.inpaint) for one in views)
+    targets = {one.index for one in matted.facades if one.target}
+    chosen = [one for one in views if not every and one.facade in targets] or views
+    yield "inpaint", tuple(inpaint.inpaint(one, networks.inpaint) for one in chosen)
 
 
 def rounded(one: Elevation | Rejection) -> Elevation | Rejection:

@@ -80,6 +80,13 @@ def explain_command(
     placard: Annotated[
         bool, typer.Option(help="Read the number board in the photo.")
     ] = True,
+    every: Annotated[
+        bool,
+        typer.Option(
+            "--every-facade",
+            help="Inpaint the neighbours' facades, too; it takes time.",
+        ),
+    ] = False,
     models: ModelsFolder = None,
 ) -> None:
     """Take one photo through every stage and show what each made of it.
@@ -100,7 +107,7 @@ def explain_command(
         raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
     try:
         networks = shelf.Models(str(models or shelf.PACKAGED)).networks(placard=placard)
-        report = explain(data, out, networks, started=started)
+        report = explain(data, out, networks, started=started, every=every)
     except Unreadable as problem:
         raise fail(f"{photo}: {problem}") from problem
     except shelf.Unlocked as problem:

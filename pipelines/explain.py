@@ -9,14 +9,14 @@ import resource
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Final
 
 import cv2
 import numpy as np
 
-from nostalgin_core import lines, quantise, steps
+from nostalgin_core import evidence, inpaint, lines, quantise, steps
 from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Elevation, Facade, Instance, Photo, Rejection
 from nostalgin_core.steps import Networks, Stages
@@ -31,8 +31,18 @@ class Unreadable(ValueError):  # noqa: N818 - it reads as what it is about
     """A file that is no photo, with what to do about it."""
 
 
-def explain(data: bytes, out: Path, networks: Networks, *, started: float) -> dict:
+def explain(
+    data: bytes,
+    out: Path,
+    networks: Networks,
+    *,
+    started: float,
+    every: bool = False,
+) -> dict:
     """Take a photo through every stage and write all there is to see into a folder.
+
+    The facades of other buildings than the photo is a record of are inpainted only if
+    `every` facade is wanted; else their holes stay open, with evidence of nothing.
 
     The total counts from `started`, the process's CPU seconds when work on this photo
     began, so that it is honest about loading.
@@ -43,7 +53,9 @@ def explain(data: bytes, out: Path, networks: Networks, *, started: float) -> di
         Unreadable: if the bytes are no photo.
     """
     seconds: dict[str, float] = {"load": time.process_time() - started}
-    made = steps.gather(timed(steps.steps(data, networks, name=NAME), seconds))
+    made = steps.gather(
+        timed(steps.steps(data, networks, name=NAME, every=every), seconds)
+    )
     if made.photo is None:
         raise Unreadable(made.rejections[0].reason + ": " + made.rejections[0].detail)
     out.mkdir(parents=True, exist_ok=True)
@@ -114,7 +126,7 @@ def facade_entry(
         empty = ("quad", "photo_from_elevation", "focal_px", "aspect")
         nothing = dict.fromkeys([*empty, "elevation", "evidence"])
         return entry | nothing | {"vanishing_points": []}
-    final = done or view
+    final = done or opened(view)
     entry |= {
         "quad": view.quad.tolist(),
         "photo_from_elevation": view.photo_from_elevation.tolist(),
@@ -127,9 +139,17 @@ def facade_entry(
         "method": view.method,
         "rectified": saved(out, f"{name}_rectified", view.image),
         "elevation": saved(out, f"{name}_elevation", final.image),
+        "inpainted": done is not None,
         "evidence": saved(out, f"{name}_evidence", final.evidence),
     }
     return finite(entry)
+
+
+def opened(view: Elevation) -> Elevation:
+    """Tell nothing of texels that wait for an inpainter in vain."""
+    waiting = inpaint.holes(view.evidence)
+    known = np.where(waiting, evidence.NOTHING, view.evidence).astype(np.uint8)
+    return replace(view, evidence=known)
 
 
 def finite(value: Any) -> Any:

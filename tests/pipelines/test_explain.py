@@ -93,6 +93,25 @@ def test_what_the_camera_saw_is_left_as_it_was(out: Path) -> None:
         assert np.array_equal(before[seen], after[seen])
 
 
+def test_a_neighbour_is_inpainted_only_if_it_is_asked_for(
+    out: Path, networks: Networks, tmp_path: Path
+) -> None:
+    explain(painted.photo(1), tmp_path, networks, started=0.0, every=True)
+    for facade, whole in zip(
+        told(out)["facades"], told(tmp_path)["facades"], strict=True
+    ):
+        assert whole["inpainted"]
+        assert facade["inpainted"] == facade["target"]
+        before = image(out, facade["evidence"])
+        after = image(tmp_path, whole["evidence"])
+        if facade["inpainted"]:
+            assert np.array_equal(before, after)
+        else:
+            assert not np.isin(
+                before, (evidence.INPAINTED, evidence.BEYOND_FRAME)
+            ).any()
+
+
 def test_the_stages_stand_side_by_side_in_one_picture(out: Path) -> None:
     picture = image(out, "panel.png")
     assert picture.shape[2] == 3
