@@ -38,3 +38,10 @@ def test_a_ring_is_a_few_times_as_wide_as_its_band() -> None:
     cv2.circle(disc, (150, 150), 110, 1, 8)
     ring = banded.order(disc > 0)
     assert ring.entries / len(ring.ranks) < 8 * 9
+
+
+def test_bands_that_all_but_touch_are_numbered_together() -> None:
+    """A window couples pixels two apart, across a known pixel between them."""
+    unknown = np.zeros((200, 40), bool)
+    unknown[:, 10:16] = unknown[:, 17:23] = True
+    assert banded.order(unknown).reach < 3 * 13
