@@ -4,6 +4,7 @@ import pytest
 
 from nostalgin_core import frame
 from nostalgin_core.records import Box
+from nostalgin_core.scenes import film
 from tests.data import DATA, needs_data
 
 
@@ -99,3 +100,12 @@ def test_prints_with_cut_margins_hardly_ever_have_one() -> None:
         image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
         found += frame.exposed(image) != Box(0, 0, *image.shape[::-1])
     assert found <= 0.1 * len(paths)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_painted_film_border_is_found(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    box, inside = film.exposed(rng, (420, 280))
+    light = _street(seed=seed).astype(np.float32)
+    found = frame.exposed(film.develop(rng, light, inside))
+    np.testing.assert_allclose(found, box, atol=1)
