@@ -47,14 +47,12 @@ def even_out(image: Gray, *, reach: float = EVEN_PX, floor: float = FLOOR) -> Gr
     local mean and standard deviation are Gaussian with `reach` pixels; `floor`, in gray
     levels, keeps grain in an empty sky from being blown up.
     """
-    size = max(1, round(reach))
-    small = cv2.resize(
-        image, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA
-    ).astype(np.float32)
-    mean = cv2.GaussianBlur(small, (0, 0), size / 2)
-    square = cv2.GaussianBlur(small * small, (0, 0), size / 2)
-    spread = np.sqrt(np.maximum(square - mean * mean, 0)) + np.float32(floor)
     h, w = image.shape
+    half = (max(1, w // 2), max(1, h // 2))
+    small = cv2.resize(image, half, interpolation=cv2.INTER_AREA).astype(np.float32)
+    mean = cv2.GaussianBlur(small, (0, 0), reach / 2)
+    square = cv2.GaussianBlur(small * small, (0, 0), reach / 2)
+    spread = np.sqrt(np.maximum(square - mean * mean, 0)) + np.float32(floor)
     mean, spread = (cv2.resize(a, (w, h)) for a in (mean, spread))
     level = (image - mean) / spread * np.float32(CONTRAST) + 128
     return np.clip(level, 0, 255).astype(np.uint8)

@@ -5,7 +5,7 @@ import pytest
 
 from nostalgin_core import evidence, rectify
 from nostalgin_core.measure_rectification import worst_angle_deg
-from nostalgin_core.records import Elevation, Matted, Photo
+from nostalgin_core.records import Box, Elevation, Facade, Matted, Photo, Rejection
 from tests.painted_front import Painted, photograph
 
 
@@ -130,3 +130,25 @@ def test_one_level_front_leaves_the_focal_length_untold() -> None:
 
 def test_a_photo_without_facades_gives_nothing(corner: Painted) -> None:
     assert rectify.rectify(corner.photo, Matted((), ())) == ()
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (2, 30), (24, 24), (90, 60)])
+@pytest.mark.parametrize("filled", [False, True], ids=["empty", "filled"])
+def test_any_small_noise_is_answered(shape: tuple[int, int], *, filled: bool) -> None:
+    rng = np.random.default_rng(shape[0])
+    image = rng.integers(0, 255, shape, dtype=np.uint8)
+    photo = Photo("0" * 16, image, Box(0, 0, shape[1], shape[0]))
+    mask = np.full(shape, filled)
+    facade = Facade(0, 1.0, filled, 1.0, mask, mask, mask.astype(np.float32))
+    (result,) = rectify.rectify(photo, Matted((facade,), ()))
+    assert isinstance(result, Elevation | Rejection)
+
+
+def test_far_corners_are_cut_off_by_a_rejection_and_not_by_memory(
+    corner: Painted,
+) -> None:
+    everything = np.ones_like(corner.matted.facades[0].mask)
+    wide = replace(corner.matted.facades[0], mask=everything, amodal=everything)
+    (result,) = rectify.rectify(corner.photo, replace(corner.matted, facades=(wide,)))
+    if isinstance(result, Elevation):
+        assert result.image.size < 4 * everything.size
