@@ -22,6 +22,8 @@ LEAST_LINES = 3.0  # whose weights support a direction
 BORROWED = 0.75  # of its own votes are enough for a direction that the street has
 WELL_KNOWN_DEG = 1.5  # the azimuth of a front that others may borrow from
 OUTLINE_DEG = 8.0  # how well a network's outline knows its directions
+SMALL_PX = 800  # the long side below which a photo is enlarged to find lines
+RUNNER_UP = 0.8  # of the winner's votes; closer, an outline can't tell two directions
 OUTLINE_SHARE = 0.2  # of an outline's level sides have to agree with what is borrowed
 BOTH = "two vanishing points"
 UPRIGHT = "upright camera assumed"
@@ -104,9 +106,21 @@ def unhidden(facade: Facade) -> Mask:
 def detect(
     photo: Photo, where: Mask
 ) -> tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]]:
-    """Find the strict and the loose lines inside `where`, in photo pixels."""
-    strict, loose = lines.detect(photo.image, lines.STRICT, lines.LOOSE, where=where)
-    return strict, loose
+    """Find the strict and the loose lines inside `where`, in photo pixels.
+
+    The detector's windows count pixels, and want windows of walls of twenty or more:
+    a photo whose long side is below `SMALL_PX` is looked at twice as large.
+    """
+    if max(photo.image.shape) >= SMALL_PX:
+        strict, loose = lines.detect(
+            photo.image, lines.STRICT, lines.LOOSE, where=where
+        )
+        return strict, loose
+    h, w = photo.image.shape
+    image = cv2.resize(photo.image, (2 * w, 2 * h), interpolation=cv2.INTER_CUBIC)
+    inside = where.repeat(2, axis=0).repeat(2, axis=1)
+    strict, loose = lines.detect(image, lines.STRICT, lines.LOOSE, where=inside)
+    return (strict - 0.5) / 2, (loose - 0.5) / 2  # pixel 0 became 0 and 1
 
 
 def signal(
@@ -202,10 +216,11 @@ def outline(photo: Photo, facade: Facade) -> Lines:
 def borrow(world: upright.Upright, i: int, sides: Lines) -> upright.Upright | None:
     """Give front `i` the well known direction to which its outline runs, if any.
 
-    The borrowed azimuth counts as uncertain by half of `OUTLINE_DEG`.
+    The borrowed azimuth counts as uncertain by `OUTLINE_DEG`.
     """
     sd = np.sqrt(np.diag(world.covariance))[3:]
     known = (sd < np.radians(OUTLINE_DEG / 2)) & (world.support[1:] >= LEAST_LINES)
+    known[i] = False
     theta = world.parameters[3:][known]
     if not len(theta):
         return None
@@ -217,10 +232,12 @@ def borrow(world: upright.Upright, i: int, sides: Lines) -> upright.Upright | No
     votes = vanish.vote(
         points[1:], sides, vanish.lengths(sides), aligned_deg=OUTLINE_DEG
     )
-    if votes.max() < OUTLINE_SHARE:
+    best = azimuths[votes.argmax()]
+    other = np.abs(np.sin(azimuths - best)) > np.sin(np.radians(2 * OUTLINE_DEG))
+    if votes.max() < OUTLINE_SHARE or np.any(votes[other] > RUNNER_UP * votes.max()):
         return None
     parameters, covariance = world.parameters.copy(), world.covariance.copy()
-    parameters[3 + i] = azimuths[votes.argmax()]
+    parameters[3 + i] = best
     covariance[3 + i, :] = covariance[:, 3 + i] = 0.0
-    covariance[3 + i, 3 + i] = np.radians(OUTLINE_DEG / 2) ** 2
+    covariance[3 + i, 3 + i] = np.radians(OUTLINE_DEG) ** 2
     return upright.Upright(parameters, covariance, world.support)

@@ -23,7 +23,7 @@ STAGE = "rectify"
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
 MOST_SKEWED = 1e9  # condition of a plane seen edge on
 ASPECTS = (0.05, 20.0)
-MOST_UNSURE_DEG = 8.0  # of the horizontal vanishing point: beyond, it is a guess
+MOST_UNSURE_DEG = 10.0  # of the horizontal vanishing point: beyond, it is a guess
 MOST_BEYOND = 0.7  # of an elevation outside the frame
 TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread to this
 
@@ -36,13 +36,26 @@ def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
         return ()
     oriented = orient.orient(photo, matted.facades)
     return tuple(
-        _rejected(photo, facade, "too few lines")
-        if method is None
-        else elevation(photo, facade, oriented.world, rank, method)
-        for rank, (facade, method) in enumerate(
-            zip(matted.facades, oriented.methods, strict=True)
-        )
+        _straighten(photo, facade, oriented, rank)
+        for rank, facade in enumerate(matted.facades)
     )
+
+
+def _straighten(
+    photo: Photo, facade: Facade, oriented: orient.Oriented, rank: int
+) -> Elevation | Rejection:
+    """Straighten one front; if its own direction leads nowhere, with a neighbour's."""
+    method = oriented.methods[rank]
+    if method is None:
+        return _rejected(photo, facade, "too few lines")
+    result = elevation(photo, facade, oriented.world, rank, method)
+    if result or method == orient.NEIGHBOUR:
+        return result
+    sides = orient.outline(photo, facade)
+    borrowed = orient.borrow(oriented.world, rank, sides)
+    if borrowed is None:
+        return result
+    return elevation(photo, facade, borrowed, rank, orient.NEIGHBOUR) or result
 
 
 def elevation(
