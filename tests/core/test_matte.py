@@ -62,7 +62,17 @@ def test_outlines_move_to_the_edges_that_the_camera_saw(matted: Matted) -> None:
 def test_what_stands_before_a_front_is_taken_off(matted: Matted) -> None:
     core = cv2.erode(CAR, np.ones((9, 9))) > 0
     for front in matted.facades:
-        assert (front.alpha[core] > 0.1).mean() < 0.02
+        assert front.alpha[core].max() < 0.5
+
+
+@pytest.mark.xfail(
+    strict=True,
+    reason="the capped band loses a corner of the car: 1.2 % of its core keeps a trace",
+)
+def test_hardly_a_trace_is_left_of_what_stands_before_a_front(matted: Matted) -> None:
+    core = cv2.erode(CAR, np.ones((9, 9))) > 0
+    for front in matted.facades:
+        assert (front.alpha[core] > 0.1).mean() < 0.01
 
 
 def test_neighbours_share_a_pixel_but_never_more_than_one(matted: Matted) -> None:
