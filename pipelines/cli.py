@@ -1,4 +1,4 @@
-"""The command line: `nostalgin demo | index | build | view | explain`.
+"""The command line: `nostalgin demo | index | build | view | explain | evaluate`.
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done with more rejections than allowed.
 Beam and the networks are imported by the commands that need them, so that `--help`
@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 from rich.console import Console
+
+from pipelines.evaluate import commands
 
 if TYPE_CHECKING:
     from pipelines.build import Report
@@ -32,6 +34,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
+app.add_typer(commands.app, name="evaluate")
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
 ModelsFolder = Annotated[
