@@ -191,9 +191,12 @@ class Detector(Protocol):
     """Finds the lines of an image, once for each pair of settings."""
 
     def __call__(
-        self, image: Gray, /, *settings: tuple[int, float]
+        self, image: Gray, /, *settings: tuple[int, float], where: Mask | None = None
     ) -> tuple[Float[np.ndarray, "_ 4"], ...]:
-        """Find lines; a detector without such settings returns the same for each."""
+        """Find lines; a detector without such settings returns the same for each.
+
+        Edges outside `where` need not be followed.
+        """
         ...
 
 

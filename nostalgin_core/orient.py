@@ -55,7 +55,12 @@ class Oriented:
     methods: tuple[str | None, ...]  # None: the front shows no direction
 
 
-def orient(photo: Photo, facades: tuple[Facade, ...]) -> Oriented:
+def orient(
+    photo: Photo,
+    facades: tuple[Facade, ...],
+    *,
+    detector: lines.Detector = lines.detect,
+) -> Oriented:
     """Fit the upright world to the lines of all fronts.
 
     Each front first chooses for itself. Once the camera is known, each may choose
@@ -65,7 +70,7 @@ def orient(photo: Photo, facades: tuple[Facade, ...]) -> Oriented:
     """
     clear = [unhidden(facade) for facade in facades]
     anywhere = np.any(clear, axis=0)
-    found = detect(photo, anywhere & _framed(photo))
+    found = detect(photo, anywhere & _framed(photo), detector=detector)
     signals = [signal(photo, found, mask) for mask in clear]
     all_lines = signal(photo, found, anywhere)
     world = _fit(_start(signals, all_lines), signals)
@@ -104,7 +109,7 @@ def unhidden(facade: Facade) -> Mask:
 
 
 def detect(
-    photo: Photo, where: Mask
+    photo: Photo, where: Mask, *, detector: lines.Detector = lines.detect
 ) -> tuple[Float[np.ndarray, "_ 4"], Float[np.ndarray, "_ 4"]]:
     """Find the strict and the loose lines inside `where`, in photo pixels.
 
@@ -112,14 +117,12 @@ def detect(
     a photo whose long side is below `SMALL_PX` is looked at twice as large.
     """
     if max(photo.image.shape) >= SMALL_PX:
-        strict, loose = lines.detect(
-            photo.image, lines.STRICT, lines.LOOSE, where=where
-        )
+        strict, loose = detector(photo.image, lines.STRICT, lines.LOOSE, where=where)
         return strict, loose
     h, w = photo.image.shape
     image = cv2.resize(photo.image, (2 * w, 2 * h), interpolation=cv2.INTER_CUBIC)
     inside = where.repeat(2, axis=0).repeat(2, axis=1)
-    strict, loose = lines.detect(image, lines.STRICT, lines.LOOSE, where=inside)
+    strict, loose = detector(image, lines.STRICT, lines.LOOSE, where=inside)
     return (strict - 0.5) / 2, (loose - 0.5) / 2  # pixel 0 became 0 and 1
 
 

@@ -11,6 +11,7 @@ from nostalgin_core import (
     camera,
     evidence,
     homography,
+    lines,
     orient,
     quad,
     upright,
@@ -30,11 +31,16 @@ TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread 
 Parameters = Float[np.ndarray, " p"]
 
 
-def rectify(photo: Photo, matted: Matted) -> tuple[Elevation | Rejection, ...]:
-    """Make one elevation, or one rejection, of each facade, in their order."""
+def rectify(
+    photo: Photo, matted: Matted, *, detector: lines.Detector = lines.detect
+) -> tuple[Elevation | Rejection, ...]:
+    """Make one elevation, or one rejection, of each facade, in their order.
+
+    Another `detector` of lines may be given, to be compared with ours.
+    """
     if not matted.facades:
         return ()
-    oriented = orient.orient(photo, matted.facades)
+    oriented = orient.orient(photo, matted.facades, detector=detector)
     return tuple(
         _straighten(photo, facade, oriented, rank)
         for rank, facade in enumerate(matted.facades)
