@@ -6,6 +6,7 @@ person is ever painted into a wall. Photographs without labels are known everywh
 
 Held out are all of block 993 (it is tuned on) and one file in ten of every other
 folder, chosen by the hash of its name, so that a new file never moves an old one.
+Painted fronts are never asked about, so none is held out.
 """
 
 import hashlib
@@ -13,12 +14,14 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import cv2
 import numpy as np
 
 from nostalgin_core.arrays import Corners, Gray, Mask
 from nostalgin_core.homography import between
+from nostalgin_core.scenes import training
 
 SHORTEST_PX = 64  # a front with a shorter side teaches nothing about windows
 LARGEST_PX = 640
@@ -33,6 +36,10 @@ PLAIN = (
 )
 
 
+# A front is straightened from a labelled quad; a plain picture is as it was taken.
+Kind = Literal["front", "painted", "plain"]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
     """One picture to learn from."""
@@ -41,7 +48,7 @@ class Sheet:
     image: Gray
     known: Mask  # what a camera saw of the front itself
     held_out: bool
-    front: bool  # straightened from a labelled quad
+    kind: Kind
 
 
 def held_out(folder: str, stem: str) -> bool:
@@ -112,7 +119,9 @@ def fronts(data: Path, folder: str) -> Iterator[Sheet]:
             image, known = straighten(photo, quad, own, hidden)
             if known.mean() > 0.3:
                 name = f"{folder}/{path.stem}/{number}"
-                yield Sheet(name, image, known, held_out(folder, path.stem), front=True)
+                yield Sheet(
+                    name, image, known, held_out(folder, path.stem), kind="front"
+                )
 
 
 def plain(data: Path, folder: str) -> Iterator[Sheet]:
@@ -126,10 +135,19 @@ def plain(data: Path, folder: str) -> Iterator[Sheet]:
             )
         kept = held_out(folder.partition("/")[0], path.stem)
         known = np.broadcast_to(np.True_, image.shape)
-        yield Sheet(f"{folder}/{path.stem}", image, known, kept, front=False)
+        yield Sheet(f"{folder}/{path.stem}", image, known, kept, kind="plain")
+
+
+def painted() -> Iterator[Sheet]:
+    """Give the fronts that painted streets share: whole, clean and known everywhere."""
+    for number in range(training.POOL):
+        image = training.pooled(number)
+        known = np.broadcast_to(np.True_, image.shape)
+        yield Sheet(f"painted/{number}", image, known, held_out=False, kind="painted")
 
 
 def sheets(data: Path) -> tuple[Sheet, ...]:
     """Read everything there is to learn from, in an order that never changes."""
     labelled = (sheet for folder in LABELLED for sheet in fronts(data, folder))
-    return (*labelled, *(sheet for folder in PLAIN for sheet in plain(data, folder)))
+    others = (sheet for folder in PLAIN for sheet in plain(data, folder))
+    return (*labelled, *others, *painted())

@@ -11,8 +11,10 @@ FOLDER receives `checkpoint.pt`, `best.pt`, `log.jsonl` and sample pictures.
 import argparse
 import json
 import time
+from collections import Counter
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -21,11 +23,10 @@ import torch.nn.functional as F  # noqa: N812 - everybody's name for it
 from torch import Tensor
 
 from export.inpainter import Critic, Generator
-from export.inpainting_data import Sheet, sheets
-from export.masks import Outline, outlines, standing
-from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.free_form import free_form_share
-from nostalgin_core.repetition import guess
+from export.inpainter_exam import answer, before, exam, marks, navier_stokes, picture
+from export.inpainting_data import Kind, Sheet, sheets
+from export.inpainting_samples import Sample, mixture, tensors
+from export.masks import Outline, outlines
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,96 +41,36 @@ class Recipe:
     rate: float = 4e-4  # Adam; the paper: 2e-5 over millions of steps
     clip: float = 1.0  # of the gradient's norm; the paper's value
     fronts: float = 0.6  # share of samples that are fronts of the time
+    painted: float = 0.1  # share that are painted fronts; the rest are other facades
     critic_from: int = 10**9  # the step at which SN-PatchGAN joins
     critic_weight: float = 0.01
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Sample:
-    """One crop with a hole; scored where the hole was made and the truth is known."""
-
-    image: Gray
-    hole: Mask
-    scored: Mask
-    guess: Gray  # made from more of the picture than the crop
-
-
-def guessed(image: Gray, hole: Mask) -> Gray:
-    """Guess what a hole hides, as the pipeline does."""
-    made = guess(np.where(hole, 0, image).astype(np.float32), hole)
-    return np.clip(np.round(made), 0, 255).astype(np.uint8)
-
-
-def scaled(sheet: Sheet, least: int, *, rng: np.random.Generator) -> tuple[Gray, Mask]:
-    """Give a picture at a random size, its shorter side at least so long."""
-    image, known = sheet.image, sheet.known
-    scale = max(least / min(image.shape), rng.uniform(0.4, 1.0))
-    shape = [max(least, round(n * scale)) for n in image.shape]
-    small = cv2.resize(image, shape[::-1], interpolation=cv2.INTER_AREA)
-    seen = known.astype(np.uint8)
-    seen = cv2.resize(seen, shape[::-1], interpolation=cv2.INTER_NEAREST) > 0
-    if rng.random() < 0.5:
-        small, seen = small[:, ::-1], seen[:, ::-1]
-    return np.ascontiguousarray(small), np.ascontiguousarray(seen)
-
-
-def within(hole: Mask, size: int, *, rng: np.random.Generator) -> tuple[int, int]:
-    """Choose the crop's top left so that a hidden texel lies in it."""
-    y, x = np.argwhere(hole)[rng.integers(hole.sum())]
-    low = [max(0, n - size + 1) for n in (int(y), int(x))]
-    high = [min(n, m - size) for n, m in zip((int(y), int(x)), hole.shape, strict=True)]
-    top, left = (rng.integers(a, b + 1) for a, b in zip(low, high, strict=True))
-    return int(top), int(left)
-
-
-def draw(
-    pictures: tuple[Sheet, ...],
-    silhouettes: tuple[Outline, ...],
-    size: int,
-    *,
-    rng: np.random.Generator,
-) -> Sample:
-    """Make a hole in one picture and crop a part of it.
-
-    The guess is made on a window of at most twice the crop's size, since a front that
-    repeats does so over more than a crop.
-    """
-    sheet = pictures[rng.integers(len(pictures))]
-    image, known = scaled(sheet, size, rng=rng)
-    shape = [min(n, 2 * size) for n in image.shape]
-    at_foot = rng.random() < 0.35
-    y = image.shape[0] - shape[0]
-    y = y if at_foot else rng.integers(y + 1)
-    x = rng.integers(image.shape[1] - shape[1] + 1)
-    window = np.s_[y : y + shape[0], x : x + shape[1]]
-    image, known = image[window], known[window]
-    if at_foot:
-        hole = standing(image.shape, silhouettes, rng=rng)
-    else:
-        hole = free_form_share(image.shape, least=rng.uniform(0.05, 0.3), rng=rng)
-    if not (hole & known).any() or (known & ~hole).mean() < 0.15:
-        return draw(pictures, silhouettes, size, rng=rng)
-    made = guessed(image, hole | ~known)
-    top, left = within(hole & known, size, rng=rng)
-    crop = np.s_[top : top + size, left : left + size]
-    return Sample(image[crop], (hole | ~known)[crop], (hole & known)[crop], made[crop])
-
-
-def tensors(samples: list[Sample]) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Stack samples as image, hole, guess and scored, images from -1 to 1."""
-    stacks = [
-        np.stack([getattr(sample, name) for sample in samples]).astype(np.float32)
-        for name in ("image", "hole", "guess", "scored")
-    ]
-    for index in (0, 2):
-        stacks[index] = stacks[index] / 127.5 - 1
-    image, hole, guesses, scored = (torch.from_numpy(a)[:, None] for a in stacks)
-    return image, hole, guesses, scored
 
 
 def off_by(made: Tensor, image: Tensor, scored: Tensor) -> Tensor:
     """Mean absolute difference over the texels that are scored."""
     return ((made - image).abs() * scored).sum() / scored.sum().clamp(min=1)
+
+
+def batch(
+    recipe: Recipe,
+    step: int,
+    pictures: tuple[Sheet, ...],
+    silhouettes: tuple[Outline, ...],
+) -> list[Sample]:
+    """Draw the samples of one step as the recipe has them."""
+    shares: dict[Kind, float] = {
+        "front": recipe.fronts,
+        "painted": recipe.painted,
+        "plain": 1 - recipe.fronts - recipe.painted,
+    }
+    return mixture(
+        (recipe.seed, step),
+        pictures,
+        silhouettes,
+        shares=shares,
+        count=recipe.batch,
+        crop=recipe.crop,
+    )
 
 
 class Trainer:
@@ -221,101 +162,73 @@ class Trainer:
         return generator.eval()
 
 
-def batch(
-    recipe: Recipe,
-    step: int,
-    pictures: tuple[Sheet, ...],
-    silhouettes: tuple[Outline, ...],
-) -> list[Sample]:
-    """Draw the samples of one step, the same ones every time."""
-    rng = np.random.default_rng((recipe.seed, step))
-    kinds = [
-        tuple(p for p in pictures if p.front),
-        tuple(p for p in pictures if not p.front),
-    ]
-    return [
-        draw(
-            kinds[int(rng.random() >= recipe.fronts)] or pictures,
-            silhouettes,
-            recipe.crop,
-            rng=rng,
-        )
-        for _ in range(recipe.batch)
-    ]
-
-
-def exam(pictures: tuple[Sheet, ...], *, count: int = 24) -> list[Sample]:
-    """Set the held-out questions: fronts of the time at their own size, to 256 px.
-
-    A half is of block 993. Holes are free-form, 20 to 30 % of the crop.
-    """
-    kept = [p for p in pictures if p.held_out and p.front]
-    tuned = [p for p in kept if "/00993" in p.name]
-    others = [p for p in kept if "/00993" not in p.name]
-    rng = np.random.default_rng(993)
-    questions = []
-    for group in (tuned, others):
-        for index in rng.permutation(len(group))[: count // 2]:
-            sheet = group[index]
-            h, w = (min(256, n // 8 * 8) for n in sheet.image.shape)
-            y = rng.integers(sheet.image.shape[0] - h + 1)
-            x = rng.integers(sheet.image.shape[1] - w + 1)
-            image = np.ascontiguousarray(sheet.image[y : y + h, x : x + w])
-            known = sheet.known[y : y + h, x : x + w]
-            hole = free_form_share((h, w), least=rng.uniform(0.18, 0.25), rng=rng)
-            if (hole & known).any() and (known & ~hole).any():
-                made = guessed(image, hole | ~known)
-                questions.append(Sample(image, hole | ~known, hole & known, made))
-    return questions
-
-
-def answer(generator: Generator, question: Sample) -> Gray:
-    """Fill one held-out picture."""
-    image, hole, guesses, _ = tensors([question])
-    with torch.no_grad():
-        made = generator(image, hole, guesses)[1][0, 0].numpy()
-    return np.clip(np.round((made + 1) * 127.5), 0, 255).astype(np.uint8)
-
-
-def navier_stokes(question: Sample) -> Gray:
-    """Fill with the classical method that all figures are measured against."""
-    return cv2.inpaint(
-        question.image, question.hole.astype(np.uint8), 3, cv2.INPAINT_NS
-    )
-
-
-def before(question: Sample) -> Gray:
-    """Give the guess that the network starts from."""
-    return question.guess
-
-
-def marks(made: list[Gray], questions: list[Sample]) -> tuple[float, float]:
-    """Give l1 and l2 in percent, over the scored texels, mean over the pictures."""
-    off = [
-        (m.astype(float) - q.image)[q.scored] / 255
-        for m, q in zip(made, questions, strict=True)
-    ]
-    return (
-        100 * float(np.mean([np.abs(d).mean() for d in off])),
-        100 * float(np.mean([np.square(d).mean() for d in off])),
-    )
-
-
-def picture(made: list[Gray], questions: list[Sample]) -> Gray:
-    """Lay truth, hole, the classical fill and ours side by side, one row a picture."""
-    rows = []
-    for ours, question in zip(made, questions, strict=True):
-        cut = np.where(question.hole, np.uint8(255), question.image)
-        row = np.hstack([question.image, cut, navier_stokes(question), ours])
-        rows.append(np.pad(row, ((0, 4), (0, 1024 - row.shape[1]))))
-    return np.vstack(rows)
-
-
 def save(state: dict, path: Path) -> None:
     """Write a checkpoint so that a cut-off never leaves half of one."""
     partial = path.with_suffix(".partial")
     torch.save(state, partial)
     partial.replace(path)
+
+
+class Diary:
+    """Writes every line of a training's log to a file, and shows it."""
+
+    def __init__(self, path: Path) -> None:
+        """Go on at the end of a file."""
+        self.path = path
+
+    def note(self, step: int, **values: float | str) -> None:
+        """Write one line."""
+        line = json.dumps({"step": step, **values})
+        print(line, flush=True)
+        with self.path.open("a") as log:
+            print(line, file=log)
+
+
+def begin(checkpoint: Path, given: dict[str, Any]) -> Trainer:
+    """Go on from a checkpoint, its recipe changed by what is given, or start anew."""
+    if not checkpoint.exists():
+        return Trainer(Recipe(**given))
+    state = torch.load(checkpoint, weights_only=True)
+    trainer = Trainer(Recipe(**(state["recipe"] | given)))
+    trainer.restore(state)
+    return trainer
+
+
+def train(
+    trainer: Trainer,
+    pictures: tuple[Sheet, ...],
+    silhouettes: tuple[Outline, ...],
+    folder: Path,
+    *,
+    minutes: float,
+    every: int,
+) -> None:
+    """Take steps until the minutes are over; examine and save every so many."""
+    diary, questions = Diary(folder / "log.jsonl"), exam(pictures)
+    taught = tuple(p for p in pictures if not p.held_out)
+    for name, method in (("navier-stokes", navier_stokes), ("guess", before)):
+        l1, l2 = marks([method(q) for q in questions], questions)
+        diary.note(trainer.step, exam=name, l1=l1, l2=l2)
+    counts = Counter(p.kind for p in taught)
+    diary.note(trainer.step, taught=len(taught), **counts)
+    until = time.monotonic() + 60 * minutes
+    recent: list[dict[str, float]] = []
+    while time.monotonic() < until:
+        drawn = batch(trainer.recipe, trainer.step, taught, silhouettes)
+        recent.append(trainer.advance(drawn))
+        if trainer.step % 50 == 0:
+            names = recent[-1]
+            means = {k: float(np.mean([r[k] for r in recent if k in r])) for k in names}
+            diary.note(trainer.step, **means, cpu_s=time.process_time())
+            recent = []
+        if trainer.step % every == 0:
+            save(trainer.state(), folder / "checkpoint.pt")
+            made = [answer(trainer.smoothed(), q) for q in questions]
+            l1, l2 = marks(made, questions)
+            diary.note(trainer.step, exam="ours", l1=l1, l2=l2)
+            sheet = picture(made[::3], questions[::3])
+            cv2.imwrite(str(folder / f"sample_{trainer.step:06d}.png"), sheet)
+    save(trainer.state(), folder / "checkpoint.pt")
 
 
 def main() -> None:
@@ -333,47 +246,14 @@ def main() -> None:
     given = {k: options[k] for k in asdict(Recipe()) if options[k] is not None}
     folder: Path = options["folder"]
     folder.mkdir(parents=True, exist_ok=True)
-    checkpoint = folder / "checkpoint.pt"
-    state = torch.load(checkpoint, weights_only=True) if checkpoint.exists() else None
-    trainer = Trainer(Recipe(**((state or {}).get("recipe", {}) | given)))
-    if state:
-        trainer.restore(state)
-    pictures = sheets(options["data"])
-    silhouettes = outlines(options["data"])
-    taught = tuple(p for p in pictures if not p.held_out)
-    questions = exam(pictures)
-    with (folder / "log.jsonl").open("a") as log:
-
-        def note(**values: float | str) -> None:
-            """Write one line of the log, and show it."""
-            line = json.dumps({"step": trainer.step, **values})
-            print(line, flush=True)
-            print(line, file=log, flush=True)
-
-        for name, method in (("navier-stokes", navier_stokes), ("guess", before)):
-            l1, l2 = marks([method(q) for q in questions], questions)
-            note(exam=name, l1=l1, l2=l2)
-        note(taught=len(taught), fronts=sum(p.front for p in taught))
-        until = time.monotonic() + 60 * options["minutes"]
-        recent: list[dict[str, float]] = []
-        while time.monotonic() < until:
-            samples = batch(trainer.recipe, trainer.step, taught, silhouettes)
-            recent.append(trainer.advance(samples))
-            if trainer.step % 50 == 0:
-                means = {
-                    k: float(np.mean([r[k] for r in recent if k in r]))
-                    for k in recent[-1]
-                }
-                note(**means, cpu_s=time.process_time())
-                recent = []
-            if trainer.step % options["every"] == 0:
-                save(trainer.state(), checkpoint)
-                made = [answer(trainer.smoothed(), q) for q in questions]
-                l1, l2 = marks(made, questions)
-                note(exam="ours", l1=l1, l2=l2)
-                sheet = picture(made[::3], questions[::3])
-                cv2.imwrite(str(folder / f"sample_{trainer.step:06d}.png"), sheet)
-        save(trainer.state(), checkpoint)
+    train(
+        begin(folder / "checkpoint.pt", given),
+        sheets(options["data"]),
+        outlines(options["data"]),
+        folder,
+        minutes=options["minutes"],
+        every=options["every"],
+    )
 
 
 if __name__ == "__main__":

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import torch
 
-from export.inpainting_data import Sheet, fronts, held_out, straighten
+from export.inpainter_exam import exam, marks
+from export.inpainting_data import Sheet, fronts, held_out, painted, straighten
 from export.masks import outlines, standing
-from export.train_inpainter import Recipe, Trainer, batch, exam, marks
+from export.train_inpainter import Recipe, Trainer, batch
 from nostalgin_core.free_form import free_form, free_form_share
 from nostalgin_core.homography import between
 
@@ -22,7 +23,8 @@ def sheets(*, count: int = 4) -> tuple[Sheet, ...]:
         image = cv2.resize(rng.integers(0, 256, (12, 9), np.uint8), (90, 120))
         known = np.ones(image.shape, bool)
         known[:20, :30] = False
-        made.append(Sheet(f"painted/{number}", image, known, number == 0, number < 3))
+        kind = "front" if number < 3 else "plain"
+        made.append(Sheet(f"noise/{number}", image, known, number == 0, kind))
     return tuple(made)
 
 
@@ -79,6 +81,20 @@ def test_block_993_and_about_a_tenth_are_never_trained_on() -> None:
     assert held_out("taxphotos", "00993_0031")
     kept = [held_out("historic_streets", f"{n}f-a") for n in range(2000)]
     assert 0.07 < np.mean(kept) < 0.13
+
+
+def test_painted_fronts_are_part_of_what_is_learnt_from() -> None:
+    sheet = next(painted())
+    assert sheet.kind == "painted"
+    assert not sheet.held_out
+    assert sheet.known.all()
+    always = Recipe(crop=64, batch=4, fronts=0.0, painted=1.0)
+    for sample in batch(always, 0, (*sheets(), sheet), (SQUARE,)):
+        assert (sample.hole == sample.scored).all()
+        assert sample.image.max() <= sheet.image.max()
+    never = Recipe(crop=64, batch=8, fronts=1.0, painted=0.0)
+    drawn = batch(never, 0, (*sheets(), sheet), (SQUARE,))
+    assert any((sample.hole != sample.scored).any() for sample in drawn)
 
 
 def test_strokes_cover_the_share_asked_for() -> None:
