@@ -7,7 +7,7 @@ outer half of its border texels cut off, as Mask R-CNN's masks are defined (He e
 2017, section 3).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import get_args
 
 import cv2
@@ -39,6 +39,22 @@ def segment(
     takes in at a glance. `long_px` bounds memory on panoramas. Scores below the two
     thresholds are dropped.
     """
+    least = min(facade_score, occluder_score)
+    found = everything(photo, network, least=least, short_px=short_px, long_px=long_px)
+    return trusted(
+        photo, found, facade_score=facade_score, occluder_score=occluder_score
+    )
+
+
+def everything(
+    photo: Photo,
+    network: Network,
+    *,
+    least: float,
+    short_px: int = 416,
+    long_px: int = 1344,
+) -> tuple[Instance, ...]:
+    """Place all that the network gives a score of `least`, surest first."""
     x0, y0, x1, y1 = photo.frame
     frame = photo.image[y0:y1, x0:x1]
     gray = prepared(frame, short_px=short_px, long_px=long_px)
@@ -46,24 +62,36 @@ def segment(
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
     found = []
     for i in np.argsort(-scores, kind="stable"):
-        category = CATEGORIES[int(labels[i]) - 1]
-        least = facade_score if category == "facade" else occluder_score
         if scores[i] < least:
-            continue
+            break
         placed = laid_over(masks[i], boxes[i] * scale, frame.shape)
         if placed is not None:
             box, probability = placed
             here = Box(box.x0 + x0, box.y0 + y0, box.x1 + x0, box.y1 + y0)
+            category = CATEGORIES[int(labels[i]) - 1]
             found.append(Instance(category, float(scores[i]), here, probability))
-    if not any(f.category == "facade" for f in found):
-        return Rejection(
-            photo.key,
-            "segment",
-            "no facade found",
-            f"no front scored {facade_score} or more; photograph shows none, or is too "
-            "dark or too small to tell: mask it by hand, or lower facade_score",
-        )
     return tuple(found)
+
+
+def trusted(
+    photo: Photo,
+    found: Sequence[Instance],
+    *,
+    facade_score: float = 0.4,
+    occluder_score: float = 0.25,
+) -> tuple[Instance, ...] | Rejection:
+    """Keep what scores enough for its kind; a photo without a front is refused."""
+    least = {"facade": facade_score}
+    kept = tuple(f for f in found if f.score >= least.get(f.category, occluder_score))
+    if any(one.category == "facade" for one in kept):
+        return kept
+    return Rejection(
+        photo.key,
+        "segment",
+        "no facade found",
+        f"no front scored {facade_score} or more; photograph shows none, or is too "
+        "dark or too small to tell: mask it by hand, or lower facade_score",
+    )
 
 
 def prepared(

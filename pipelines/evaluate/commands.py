@@ -4,6 +4,10 @@ Each subcommand prints one report, as tables for people or, with `--json`, as JS
 What is measured is told in the module of the same name beside this one.
 """
 
+import json
+from pathlib import Path
+from typing import Annotated
+
 import typer
 
 app = typer.Typer(
@@ -16,3 +20,33 @@ app = typer.Typer(
 @app.callback()
 def evaluate() -> None:
     """Measure a stage against labelled data."""
+
+
+@app.command("segmentation")
+def segmentation_command(
+    folder: Annotated[Path, typer.Argument(help="Holds photos/ and labels/.")],
+    *,
+    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    models: Annotated[
+        Path | None, typer.Option(help="Folder with other networks.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Measure how well fronts and what hides them are found: the paper's table 1."""
+    from pipelines import models as shelf
+
+    shelf.one_thread()
+    from pipelines.evaluate import Unmeasurable, labels
+
+    try:
+        labelled = labels.pairs(folder, block=block)
+        network = shelf.Models(str(models or shelf.PACKAGED)).load("segment")
+        from pipelines.evaluate import segmentation, segmentation_table
+
+        report = segmentation.evaluate(labelled, network)
+    except (Unmeasurable, shelf.Unlocked) as problem:
+        typer.secho(f"error: {problem}", fg="red", err=True)
+        raise typer.Exit(1) from problem
+    typer.echo(
+        json.dumps(report, indent=1) if as_json else segmentation_table.text(report)
+    )

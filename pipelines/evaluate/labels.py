@@ -97,9 +97,7 @@ def truth(label: dict[str, Any], shape: tuple[int, int]) -> Truth:
     facades = [(one, m) for one, m in outlines if one["category"] == "facade"]
     single = [(one, mask) for one, mask in facades if not one.get("group")]
     hiders = tuple(
-        (one["category"], mask)
-        for one, mask in outlines
-        if one["category"] != "facade"
+        (one["category"], mask) for one, mask in outlines if one["category"] != "facade"
     )
     hidden = union([mask for _, mask in hiders], shape)
     built = union([mask for _, mask in single], shape)
