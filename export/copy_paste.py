@@ -25,7 +25,7 @@ class Donor:
 
     category: Category
     patch: Gray
-    polygon: Points  # in pixels of the patch
+    rings: tuple[Points, ...]  # in pixels of the patch
     foot: float  # height of its lowest pixel in its photo, 0 at the top, 1 below
     photo_height: int
 
@@ -38,16 +38,17 @@ def donors(samples: Sequence[Sample]) -> list[Donor]:
         for thing in sample.things:
             if thing.category == "facade":
                 continue
-            low = np.floor(thing.polygon.min(0)).astype(int) - MARGIN_PX
-            high = np.ceil(thing.polygon.max(0)).astype(int) + MARGIN_PX
+            points = np.concatenate(thing.rings)
+            low = np.floor(points.min(0)).astype(int) - MARGIN_PX
+            high = np.ceil(points.max(0)).astype(int) + MARGIN_PX
             x0, y0 = np.maximum(low, 0)
             x1, y1 = np.minimum(high, (width, height))
             if min(x1 - x0, y1 - y0) < SMALLEST_DONOR_PX:
                 continue
             patch = sample.image[y0:y1, x0:x1].copy()
-            foot = float(thing.polygon[:, 1].max() / height)
-            polygon = thing.polygon - (x0, y0)
-            cut.append(Donor(thing.category, patch, polygon, foot, height))
+            foot = float(points[:, 1].max() / height)
+            rings = tuple(ring - (x0, y0) for ring in thing.rings)
+            cut.append(Donor(thing.category, patch, rings, foot, height))
     return cut
 
 
@@ -75,16 +76,19 @@ def _stand(
     if size[0] >= width or size[1] >= height:
         return None
     patch = cv2.resize(donor.patch, size, interpolation=cv2.INTER_AREA)
-    polygon = donor.polygon * (np.array(size) / donor.patch.shape[::-1])
+    enlarged = np.array(size) / donor.patch.shape[::-1]
+    rings = tuple(ring * enlarged for ring in donor.rings)
     if rng.random() < 0.5 and donor.category != "placard":  # boards are not mirrored
-        patch, polygon = patch[:, ::-1], polygon * (-1, 1) + (size[0] - 1, 0)
+        patch = patch[:, ::-1]
+        rings = tuple(ring * (-1, 1) + (size[0] - 1, 0) for ring in rings)
     foot = (donor.foot + rng.normal(0, 0.03)) * height
     y0 = int(np.clip(foot - size[1], 0, height - size[1]))
     x0 = int(rng.integers(width - size[0]))
-    inside = fill(polygon, patch.shape).astype(np.float32)
+    inside = fill(rings, patch.shape).astype(np.float32)
     soft = cv2.GaussianBlur(inside, (0, 0), 0.7) * inside
     there = image[y0 : y0 + size[1], x0 : x0 + size[0]]
     shade = rng.uniform(0.8, 1.2)
     blended = soft * np.clip(patch * shade, 0, 255) + (1 - soft) * there
     there[:] = np.round(blended).astype(np.uint8)
-    return Thing(donor.category, polygon + np.array([x0, y0]), layer)
+    rings = tuple(ring + np.array([x0, y0]) for ring in rings)
+    return Thing(donor.category, rings, layer)

@@ -60,7 +60,7 @@ def fronts(samples: Iterable[Sample], network: Network) -> list[Fronts]:
             continue
         board = facade.board(instances)
         shape = sample.image.shape
-        aims = [fill(t.polygon, shape) for t in targets]
+        aims = [fill(t.rings, shape) for t in targets]
         for masks, scores in (_labelled(sample), _found(photo, instances)):
             if masks:
                 rows = [
@@ -75,7 +75,7 @@ def fronts(samples: Iterable[Sample], network: Network) -> list[Fronts]:
 def _labelled(sample: Sample) -> tuple[list[Mask], list[float]]:
     shape = sample.image.shape
     outlined = [
-        fill(t.polygon, shape)
+        fill(t.rings, shape)
         for t in sample.things
         if t.category == "facade" and t.scored
     ]

@@ -57,10 +57,10 @@ def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
     shape = sample.image.shape
     fronts = [t for t in sample.things if t.category == "facade" and t.scored]
     far = [t for t in sample.things if t.category == "facade" and not t.scored]
-    hidden = _union([fill(t.polygon, shape) for t in sample.things if t.layer], shape)
-    whole = [fill(t.polygon, shape) for t in fronts]
+    hidden = _union([fill(t.rings, shape) for t in sample.things if t.layer], shape)
+    whole = [fill(t.rings, shape) for t in fronts]
     every = _union(whole, shape)
-    counted = ~(_union([fill(t.polygon, shape) for t in far], shape) & ~every)
+    counted = ~(_union([fill(t.rings, shape) for t in far], shape) & ~every)
     masks = [(i.category, _whole(i, shape) > 0.5) for i in instances]
     facades = [m for category, m in masks if category == "facade"]
     before = _union([m for category, m in masks if category != "facade"], shape)

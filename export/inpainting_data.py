@@ -9,7 +9,6 @@ folder, chosen by the hash of its name, so that a new file never moves an old on
 Painted fronts are never asked about, so none is held out.
 """
 
-import hashlib
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,14 +18,16 @@ from typing import Literal
 import cv2
 import numpy as np
 
-from nostalgin_core.arrays import Corners, Gray, Mask
-from nostalgin_core.homography import between
+from nostalgin_core.arrays import Gray, Mask
+from nostalgin_core.labelled_fronts import (
+    LARGEST_PX,
+    held_out,
+    size_of,
+    straighten,
+    straightened,
+)
 from nostalgin_core.scenes import training
 
-SHORTEST_PX = 64  # a front with a shorter side teaches nothing about windows
-LARGEST_PX = 640
-OUTLINE_PX = 3  # labels are good to about this
-HELD_OUT_BLOCK = "00993"
 LABELLED = ("taxphotos", "historic_streets")
 PLAIN = (
     "historic_streets/photos",
@@ -34,6 +35,18 @@ PLAIN = (
     "rectified_facades",
     "facades_coco/train",
 )
+__all__ = [
+    "Kind",
+    "Sheet",
+    "fronts",
+    "held_out",
+    "painted",
+    "plain",
+    "read",
+    "sheets",
+    "size_of",
+    "straighten",
+]
 
 
 # A front is straightened from a labelled quad; a plain picture is as it was taken.
@@ -51,42 +64,6 @@ class Sheet:
     kind: Kind
 
 
-def held_out(folder: str, stem: str) -> bool:
-    """Tell whether a file is kept from training: block 993, and one in ten by name."""
-    if folder == "taxphotos" and stem.startswith(HELD_OUT_BLOCK):
-        return True
-    return hashlib.sha256(f"{folder}/{stem}".encode()).digest()[0] % 10 == 0
-
-
-def size_of(quad: Corners) -> tuple[int, int]:
-    """Give a straightened front the mean lengths of its quad's sides: (h, w)."""
-    sides = np.linalg.norm(quad - np.roll(quad, -1, axis=0), axis=1)
-    across, down = (sides[0] + sides[2]) / 2, (sides[1] + sides[3]) / 2
-    shrink = min(1.0, LARGEST_PX / max(across, down))
-    return round(down * shrink), round(across * shrink)
-
-
-def straighten(
-    photo: Gray, quad: Corners, own: Mask, hidden: Mask
-) -> tuple[Gray, Mask]:
-    """Warp a quad of a photo to a rectangle, with what is known of it."""
-    h, w = size_of(quad)
-    corners = np.array([[0, 0], [w - 1, 0], [w - 1, h - 1], [0, h - 1]], float)
-    front_from_photo = between(quad, corners)
-    image = cv2.warpPerspective(photo, front_from_photo, (w, h), flags=cv2.INTER_AREA)
-    seen = (own & ~hidden).astype(np.uint8)
-    known = cv2.warpPerspective(seen, front_from_photo, (w, h), flags=cv2.INTER_NEAREST)
-    return image, known > 0
-
-
-def _painted(shape: tuple[int, int], polygons: list[list[list[float]]]) -> Mask:
-    """Fill polygons."""
-    canvas = np.zeros(shape, np.uint8)
-    for polygon in polygons:
-        cv2.fillPoly(canvas, [np.round(polygon).astype(np.int32)], 1)
-    return canvas > 0
-
-
 def read(path: Path) -> Gray:
     """Read a photograph in gray.
 
@@ -101,27 +78,14 @@ def read(path: Path) -> Gray:
 
 def fronts(data: Path, folder: str) -> Iterator[Sheet]:
     """Straighten every labelled front of a folder, far rows and slivers left out."""
-    grow = np.ones((2 * OUTLINE_PX + 1,) * 2, np.uint8)
     for path in sorted((data / folder / "labels").glob("*.json")):
         # A tax photograph's file name begins with the archive's own prefix.
         (file,) = (data / folder / "photos").glob(f"*{path.stem}.jpg")
-        photo = read(file)
         objects = json.loads(path.read_text())["objects"]
-        others = [o["polygon"] for o in objects if o["category"] != "facade"]
-        hidden = cv2.dilate(_painted(photo.shape, others).astype(np.uint8), grow) > 0
-        for number, thing in enumerate(objects):
-            if thing["category"] != "facade" or thing.get("group"):
-                continue
-            quad = np.array(thing["quad"], float)
-            if min(size_of(quad)) < SHORTEST_PX:
-                continue
-            own = _painted(photo.shape, [thing["polygon"]])
-            image, known = straighten(photo, quad, own, hidden)
-            if known.mean() > 0.3:
-                name = f"{folder}/{path.stem}/{number}"
-                yield Sheet(
-                    name, image, known, held_out(folder, path.stem), kind="front"
-                )
+        kept = held_out(folder, path.stem)
+        for number, image, known in straightened(read(file), objects):
+            name = f"{folder}/{path.stem}/{number}"
+            yield Sheet(name, image, known, kept, kind="front")
 
 
 def plain(data: Path, folder: str) -> Iterator[Sheet]:

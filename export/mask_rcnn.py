@@ -39,6 +39,7 @@ STAGES = (
 )
 TAPS = (2, 5, 12, 16)  # the last blocks at strides 4, 8, 16 and 32
 CHANNELS = 128  # of the pyramid; 256 doubles the time
+MASK_CELLS = 23  # a side; masks come out at twice that: the paper's 46 for facades
 FROZEN_BLOCKS = 6  # strides 2 to 8: edges are edges in any decade
 PROPOSING = ("1", "2", "3", "pool")  # stride 4 would double the work and find nothing
 
@@ -180,7 +181,7 @@ def _heads(detections: int, score: float) -> RoIHeads:
         score_thresh=score,
         nms_thresh=0.5,
         detections_per_img=detections,
-        mask_roi_pool=MultiScaleRoIAlign(levels, 14, 2),
+        mask_roi_pool=MultiScaleRoIAlign(levels, MASK_CELLS, 2),
         mask_head=MaskRCNNHeads(CHANNELS, (CHANNELS,) * 4, 1),
         mask_predictor=MaskRCNNPredictor(CHANNELS, CHANNELS, classes),
     )

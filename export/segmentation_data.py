@@ -1,12 +1,15 @@
 """Hand-drawn outlines become boxes, labels and masks of what a camera saw.
 
-A *thing* is one outline. Its visible part is its polygon minus every thing of a higher
-layer: fronts lie at layer 0, what stands before them at 1, what augmentation pasted on
-top at 2 and more. Far rows that cannot be told apart (`group`) are *unscored*: label -1
-takes them out of the box head's losses, though proposals may rest on them.
+A *thing* is one outline: rings whose inside is what lies within an odd number of them,
+so that a front may have holes and lie in pieces. Its visible part is its inside minus
+every thing of a higher layer: fronts lie at layer 0, what stands before them at 1, what
+augmentation pasted on top at 2 and more. Far rows that cannot be told apart (`group`)
+are *unscored*: label -1 takes them out of the box head's losses, though proposals may
+rest on them.
 """
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,7 +32,7 @@ class Thing:
     """One outline, in pixels of its photo."""
 
     category: Category
-    polygon: Points
+    rings: tuple[Points, ...]
     layer: int
     scored: bool = True
     target: bool = False
@@ -77,18 +80,18 @@ def read_sample(photo: Path, label: Path) -> Sample:
 def _thing(labelled: dict) -> Thing:
     return Thing(
         category=labelled["category"],
-        polygon=np.array(labelled["polygon"], float),
+        rings=(np.array(labelled["polygon"], float),),
         layer=0 if labelled["category"] == "facade" else 1,
         scored=not labelled.get("group", False),
         target=bool(labelled.get("target")),
     )
 
 
-def fill(polygon: Points, shape: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
-    """Return the pixels inside a polygon, its outline included."""
+def fill(rings: Sequence[Points], shape: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
+    """Return the pixels inside an odd number of rings, the rings included."""
     canvas = np.zeros(shape, np.uint8)
-    fixed = np.round(polygon * 2**SHIFT_BITS).astype(np.int32)
-    cv2.fillPoly(canvas, [fixed], 1, shift=SHIFT_BITS)
+    fixed = [np.round(ring * 2**SHIFT_BITS).astype(np.int32) for ring in rings]
+    cv2.fillPoly(canvas, fixed, 1, shift=SHIFT_BITS)
     return canvas.astype(bool)
 
 
@@ -99,7 +102,7 @@ def truth(sample: Sample) -> Truth:
     masks = {}
     for layer in sorted({t.layer for t in sample.things}, reverse=True):
         here = [i for i, t in enumerate(sample.things) if t.layer == layer]
-        filled = {i: fill(sample.things[i].polygon, shape) for i in here}
+        filled = {i: fill(sample.things[i].rings, shape) for i in here}
         masks |= {i: m & ~covered for i, m in filled.items()}
         for mask in filled.values():
             covered |= mask
@@ -141,12 +144,14 @@ def view(
     if flipped:
         image = image[:, ::-1]
 
-    def moved(thing: Thing) -> Thing:
-        polygon = (thing.polygon + 0.5) * (size[0] / width, size[1] / height) - 0.5
+    def moved(ring: Points) -> Points:
+        polygon = (ring + 0.5) * (size[0] / width, size[1] / height) - 0.5
         polygon = polygon - (x0, y0)
         if flipped:
             polygon = polygon * (-1, 1) + (keep_w - 1, 0)
-        return replace(thing, polygon=polygon)
+        return polygon
 
-    things = tuple(moved(t) for t in sample.things)
+    things = tuple(
+        replace(t, rings=tuple(moved(ring) for ring in t.rings)) for t in sample.things
+    )
     return Sample(sample.name, np.ascontiguousarray(image), things)

@@ -22,6 +22,7 @@ from torch import Tensor
 from export.copy_paste import Donor, donors, paste
 from export.held_out import figures
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
+from export.painted_segmentation_data import read_painted
 from export.segmentation_data import Sample, read_folder, truth, view
 from export.wear import wear
 from export.weights import read_weights
@@ -168,9 +169,12 @@ def main() -> None:
     args = _arguments()
     torch.set_num_threads(args.threads)
     schedule = Schedule(steps=args.steps, rate=args.rate, seed=args.seed)
-    pools = [read_folder(args.data / n) for n in ("taxphotos", "historic_streets")]
+    real = [read_folder(args.data / n) for n in ("taxphotos", "historic_streets")]
+    painted = read_painted(args.painted) if args.painted else []
+    # Each pool is drawn evenly: two real photos of either set to one that is painted.
+    pools = [*real, *real, painted] if painted else real
     judged = read_folder(args.data / "taxphotos", held_out=True)
-    cut = donors([s for pool in pools for s in pool])
+    cut = donors([s for pool in real for s in pool])
     args.into.mkdir(parents=True, exist_ok=True)
     checkpoint = args.into / "last.pt"
     if checkpoint.exists():
@@ -199,6 +203,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--start", type=Path, required=True, help=".npz or .onnx")
     parser.add_argument("--into", type=Path, required=True, help="logs, checkpoints")
+    parser.add_argument("--painted", type=Path, help="folder of painted photos")
     parser.add_argument("--steps", type=int, default=usual.steps)
     parser.add_argument("--rate", type=float, default=usual.rate)
     parser.add_argument("--seed", type=int, default=usual.seed)

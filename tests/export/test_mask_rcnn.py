@@ -40,7 +40,7 @@ def test_a_detection_is_a_box_a_label_a_score_and_a_mask() -> None:
     assert 0 < count <= 7
     assert boxes.shape == (count, 4)
     assert labels.shape == scores.shape == (count,)
-    assert masks.shape == (count, 28, 28)
+    assert masks.shape == (count, 46, 46)
     assert labels.min() >= 1
     assert labels.max() <= 6
     assert (boxes[:, 2] <= 160).all()
@@ -122,10 +122,10 @@ def test_what_is_frozen_has_no_gradient() -> None:
 def test_the_labels_themselves_are_judged_perfect() -> None:
     sample = painted()
     shape = sample.image.shape
-    hidden = np.any([fill(t.polygon, shape) for t in sample.things if t.layer], axis=0)
+    hidden = np.any([fill(t.rings, shape) for t in sample.things if t.layer], axis=0)
     instances = []
     for thing in sample.things:
-        mask = fill(thing.polygon, shape)
+        mask = fill(thing.rings, shape)
         mask = mask & ~hidden if thing.layer == 0 else mask
         whole = Box(0, 0, shape[1], shape[0])
         instances.append(Instance(thing.category, 1.0, whole, mask.astype(np.float32)))
