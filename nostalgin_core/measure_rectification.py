@@ -88,4 +88,43 @@ def worst_angle_deg(quad: Corners, photo_from_elevation: Matrix3) -> float:
 def corner_error(found: Corners, true: Corners) -> float:
     """Measure the mean distance of a quad's corners, over the true quad's diagonal."""
     diagonal = np.linalg.norm(true[2] - true[0])
-    return float(np.linalg.norm(found - true, axis=1).mean() / diagonal)
+    return corner_error_px(found, true) / float(diagonal)
+
+
+def corner_error_px(found: Corners, true: Corners) -> float:
+    """Measure the mean distance of a quad's corners from the true ones."""
+    return float(np.linalg.norm(found - true, axis=1).mean())
+
+
+def width_px(quad: Corners) -> float:
+    """Measure how wide a quad is: the mean of its upper and its lower side."""
+    upper, lower = quad[1] - quad[0], quad[2] - quad[3]
+    return float((np.linalg.norm(upper) + np.linalg.norm(lower)) / 2)
+
+
+def angle_deg(
+    one: Float[np.ndarray, "3"], other: Float[np.ndarray, "3"], camera_matrix: Matrix3
+) -> float:
+    """Measure the angle between the directions of two vanishing points.
+
+    The sine is the norm of the cross product of unit rays, which is exact near zero,
+    where the cosine is flat.
+    """
+    rays = np.linalg.solve(camera_matrix, np.column_stack([one, other]))
+    a, b = (rays / np.linalg.norm(rays, axis=0)).T
+    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), abs(a @ b))))
+
+
+def bounded_aspect(found: Corners, true: Corners, true_aspect: float) -> float:
+    """Measure the true width over height of what a found quad bounds of a front.
+
+    The found corners are carried to the front's plane by the true homography; width
+    and height join the middles of opposite sides. Where the photo's edge cuts a front,
+    this is what its aspect ratio has to be compared with.
+    """
+    width, height = true_aspect, 1.0
+    rectangle = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
+    flat = homography.apply(homography.between(true, rectangle), found)
+    middles = (flat + np.roll(flat, -1, axis=0)) / 2
+    across, down = middles[1] - middles[3], middles[2] - middles[0]
+    return float(np.linalg.norm(across) / np.linalg.norm(down))

@@ -50,3 +50,58 @@ def segmentation_command(
     typer.echo(
         json.dumps(report, indent=1) if as_json else segmentation_table.text(report)
     )
+
+
+RECTIFICATION_EXAMPLES = """
+Examples:
+
+  nostalgin evaluate rectification DATA --parts labels --block 00993
+
+  nostalgin evaluate rectification DATA --parts york_urban --detector ours,lsd,hough
+
+  nostalgin evaluate rectification DATA --parts painted --fronts 500 --keep painted
+"""
+
+
+@app.command("rectification", epilog=RECTIFICATION_EXAMPLES)
+def rectification_command(
+    data: Annotated[
+        Path,
+        typer.Argument(help="Holds york_urban/, taxphotos/, historic_streets/."),
+    ],
+    *,
+    parts: Annotated[
+        str | None,
+        typer.Option(help="york_urban,labels,painted,table2; all that have data."),
+    ] = None,
+    detector: Annotated[
+        str, typer.Option(help="Which lines: ours,lsd,hough; one or several.")
+    ] = "ours",
+    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    fronts: Annotated[int, typer.Option(min=1, help="Painted fronts.")] = 60,
+    keep: Annotated[
+        Path | None, typer.Option(help="Folder to keep painted photos in.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Measure how well fronts are straightened, and the paper's table 2."""
+    from pipelines import models as shelf
+
+    shelf.one_thread()
+    from pipelines.evaluate import Unmeasurable, rectification, rectification_table
+
+    try:
+        report = rectification.evaluate(
+            data,
+            parts=tuple(parts.split(",")) if parts is not None else None,
+            detector=tuple(detector.split(",")),
+            block=block,
+            fronts=fronts,
+            keep=keep,
+        )
+    except Unmeasurable as problem:
+        typer.secho(f"error: {problem}", fg="red", err=True)
+        raise typer.Exit(1) from problem
+    typer.echo(
+        json.dumps(report, indent=1) if as_json else rectification_table.text(report)
+    )

@@ -62,3 +62,30 @@ def test_a_torn_quad_errs_by_ninety_degrees() -> None:
 def test_corner_error_is_a_share_of_the_diagonal() -> None:
     error = measure_rectification.corner_error(SQUARE + np.array([0.1, 0.0]), SQUARE)
     assert error == pytest.approx(0.1 / np.sqrt(2))
+
+
+def test_a_shifted_quad_errs_by_its_shift() -> None:
+    quad = np.array([[10.0, 20.0], [90.0, 20.0], [90.0, 80.0], [10.0, 80.0]])
+    assert measure_rectification.corner_error_px(quad, quad) == 0
+    moved = quad + np.array([3.0, -4.0])
+    assert measure_rectification.corner_error_px(moved, quad) == pytest.approx(5.0)
+    assert measure_rectification.corner_error(moved, quad) == pytest.approx(0.05)
+    assert measure_rectification.width_px(quad) == pytest.approx(80.0)
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 1.0, 89.0])
+def test_two_points_are_as_far_apart_as_the_camera_turned(turn_deg: float) -> None:
+    turn = np.radians(turn_deg)
+    one = CAMERA @ [0.0, 0.0, 1.0]
+    other = -2.5 * (CAMERA @ [np.sin(turn), 0.0, np.cos(turn)])
+    found = measure_rectification.angle_deg(one, other, CAMERA)
+    assert found == pytest.approx(turn_deg, abs=1e-9)
+
+
+def test_the_true_quad_bounds_the_true_aspect_and_half_of_it_half() -> None:
+    quad = np.array([[10.0, 20.0], [90.0, 5.0], [100.0, 95.0], [5.0, 80.0]])
+    aspect = measure_rectification.bounded_aspect(quad, quad, 0.7)
+    assert aspect == pytest.approx(0.7)
+    left_half = homography.apply(homography.between(SQUARE, quad), SQUARE * [0.5, 1.0])
+    aspect = measure_rectification.bounded_aspect(left_half, quad, 0.7)
+    assert aspect == pytest.approx(0.35)
