@@ -10,6 +10,8 @@ import numpy as np
 
 from nostalgin_core.arrays import Mask
 
+REFUSED = 100  # strokes in a row; one in three or so fits into a tenth of a picture
+
 
 def free_form(shape: tuple[int, int], *, rng: np.random.Generator) -> Mask:
     """Draw one brush stroke of several joints."""
@@ -33,10 +35,23 @@ def free_form(shape: tuple[int, int], *, rng: np.random.Generator) -> Mask:
 
 
 def free_form_share(
-    shape: tuple[int, int], *, least: float, rng: np.random.Generator
+    shape: tuple[int, int],
+    *,
+    least: float,
+    most: float = 1.0,
+    rng: np.random.Generator,
 ) -> Mask:
-    """Draw strokes until at least a share of the picture is covered."""
+    """Draw strokes until at least a share of the picture is covered.
+
+    A stroke that would cover more than `most` is drawn anew. Where most is reached only
+    by strokes of a few texels, as in a tiny picture, the last stroke tried is taken.
+    """
     hole = np.zeros(shape, bool)
+    refused = 0
     while hole.mean() < least:
-        hole |= free_form(shape, rng=rng)
+        more = hole | free_form(shape, rng=rng)
+        if more.mean() <= most or refused == REFUSED:
+            hole, refused = more, 0
+        else:
+            refused += 1
     return hole

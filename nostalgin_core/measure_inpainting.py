@@ -6,7 +6,7 @@ figures are their mean and standard deviation over pictures. Such figures hardly
 methods apart (paper, section 4.3), so a classical method stands beside them always.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import cv2
@@ -20,10 +20,13 @@ from nostalgin_core.inpaint import Network, low_memory, whole
 from nostalgin_core.records import Elevation
 from nostalgin_core.repetition import guess
 from nostalgin_core.smooth import fill
+from nostalgin_core.standing import Outline, standing
 
 Fill = Callable[[Gray, Mask], Gray]
 
 RADIUS_PX = 3  # of the classical methods (paper, appendix)
+LEAST_SCORED_PX = 50  # fewer would be chance
+LEAST_SEEN = 0.15  # of a picture: with less, nobody could tell
 
 
 class Question(NamedTuple):
@@ -42,9 +45,27 @@ class Marks(NamedTuple):
 
 
 def ask(image: Gray, known: Mask, *, rng: np.random.Generator) -> Question:
-    """Draw free-form strokes over 20 to 30 % of a picture, or somewhat more."""
-    hole = free_form_share(image.shape, least=rng.uniform(0.2, 0.25), rng=rng)
+    """Draw free-form strokes over 20 to 30 % of a picture."""
+    hole = free_form_share(image.shape, least=0.2, most=0.3, rng=rng)
     return Question(image, hole | ~known, hole & known)
+
+
+def ask_at_foot(
+    image: Gray,
+    known: Mask,
+    outlines: Sequence[Outline],
+    *,
+    rng: np.random.Generator,
+) -> Question:
+    """Stand people and cars before a front."""
+    hole = standing(image.shape, outlines, rng=rng)
+    return Question(image, hole | ~known, hole & known)
+
+
+def answerable(question: Question) -> bool:
+    """Tell whether there is anything to score, and anything to fill it from."""
+    seen = (~question.hole).mean()
+    return bool(question.scored.sum() >= LEAST_SCORED_PX and seen > LEAST_SEEN)
 
 
 def mark(made: Gray, question: Question) -> Marks:
