@@ -9,10 +9,12 @@ from typing import Any
 
 import cv2
 import numpy as np
+from jaxtyping import Float
 
-from nostalgin_core.arrays import Mask, Points
+from nostalgin_core.arrays import Mask
 
-Outline = Points  # unit height, feet at y = 0, upwards negative, centred on x = 0
+Outline = Float[np.ndarray, "_ 2"]
+"""Corners of a silhouette of unit height: feet at y = 0, up is negative, x = 0 amid."""
 
 STANDING = ("person", "vehicle", "placard", "other")
 LEAST_PX = 12  # a smaller occluder's outline is too rough to be enlarged
