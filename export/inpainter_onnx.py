@@ -2,25 +2,21 @@
 
     python -m export.inpainter_onnx CHECKPOINT MODELS
 
-Weights are stored as float16 and cast on loading; all reckoning is in float32. Facts
-that a reader of the file needs lie inside it, as metadata.
+Facts that a reader of the file needs lie inside it, as metadata.
 """
 
 import argparse
-import hashlib
 import io
-import json
 import warnings
 from pathlib import Path
 
 import numpy as np
-import onnx
 import onnxruntime
 import torch
-from onnx import TensorProto, helper, numpy_helper
 from torch import Tensor, nn
 
 from export.inpainter import MULTIPLE, Generator
+from export.shipping import lock, shipped
 
 STRIPS = 8  # of the attention: its score map is an eighth of the whole one
 TOLERANCE = 2e-2  # of the range -1 to 1: what float16 weights cost, about 1 gray level
@@ -39,24 +35,6 @@ class Shipped(nn.Module):
     def forward(self, image: Tensor, hole: Tensor, guess: Tensor) -> Tensor:
         """Give the refined image alone."""
         return self.generator(image, hole, guess, strips=self.strips)[1]
-
-
-def slim(model: onnx.ModelProto, *, least: int = 256) -> onnx.ModelProto:
-    """Store large weights as float16, each with a cast back in front of its use."""
-    casts = []
-    for weight in model.graph.initializer:
-        if weight.data_type != TensorProto.FLOAT or np.prod(weight.dims) < least:
-            continue
-        half = numpy_helper.to_array(weight).astype(np.float16)
-        name = weight.name
-        weight.CopyFrom(numpy_helper.from_array(half, f"{name}.half"))
-        casts.append(
-            helper.make_node("Cast", [f"{name}.half"], [name], to=TensorProto.FLOAT)
-        )
-    nodes = [*casts, *model.graph.node]
-    del model.graph.node[:]
-    model.graph.node.extend(nodes)
-    return model
 
 
 def export(
@@ -80,10 +58,7 @@ def export(
             opset_version=17,
             dynamo=False,
         )
-    model = slim(onnx.load_from_string(written.getvalue()))
-    helper.set_model_props(model, {"multiple": str(MULTIPLE), **facts})
-    onnx.checker.check_model(model)
-    return model.SerializeToString()
+    return shipped(written.getvalue(), facts={"multiple": str(MULTIPLE), **facts})
 
 
 def session(data: bytes) -> onnxruntime.InferenceSession:
@@ -110,15 +85,6 @@ def parity(generator: Generator, data: bytes, shapes: list[tuple[int, int]]) -> 
     return worst
 
 
-def lock(models: Path, name: str, data: bytes) -> None:
-    """Write a model and its SHA-256 beside it, other entries untouched."""
-    (models / name).write_bytes(data)
-    path = models / "models.lock"
-    entries = json.loads(path.read_text()) if path.exists() else {}
-    entries[name] = hashlib.sha256(data).hexdigest()
-    path.write_text(json.dumps(entries, indent=2, sort_keys=True) + "\n")
-
-
 def main() -> None:
     """Export a checkpoint's averaged weights; fail if the two runtimes disagree."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -136,7 +102,7 @@ def main() -> None:
     print(f"{len(data)} bytes, torch and ONNX Runtime differ by at most {off:.2e}")
     if off > TOLERANCE:
         raise ValueError(f"the export differs by {off}, more than {TOLERANCE}")
-    lock(options.models, NAME, data)
+    lock(options.models / NAME, data)
 
 
 if __name__ == "__main__":

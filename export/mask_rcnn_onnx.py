@@ -1,8 +1,7 @@
 """The trained network leaves torch as one ONNX file, and proves that it is the same.
 
-Weights are kept in half precision and cast on loading: 13 MB instead of 27. They keep
-their names, so that training goes on from the shipped file. The legacy exporter is used
-because the newer one fails in torchvision's non-maximum suppression.
+The legacy exporter is used because the newer one fails in torchvision's non-maximum
+suppression.
 
     python -m export.mask_rcnn_onnx --weights CHECKPOINT --into segment.onnx
 """
@@ -17,20 +16,18 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import onnx
 import torch
 from jaxtyping import Float32
-from onnx import TensorProto, helper, numpy_helper
 
 import nostalgin_core
 from export.mask_rcnn import MaskRCNN, load_weights
-from export.weights import CAST, read_weights
+from export.shipping import SMALLEST_HALVED, lock, shipped
+from export.weights import read_weights
 from nostalgin_core import session
 from nostalgin_core.segment import prepared
 
 OPSET = 17
 OUTPUTS = ("boxes", "labels", "scores", "masks")
-SMALLEST_HALVED = 64  # biases weigh nothing and stay exact
 TOLERANCE = 0.05  # px, and hundredths of that in scores: rounding, added up
 
 
@@ -53,25 +50,7 @@ def export(network: MaskRCNN, example: Float32[np.ndarray, "1 1 h w"]) -> bytes:
             do_constant_folding=False,
             dynamo=False,
         )
-    return halved(onnx.load_from_string(buffer.getvalue())).SerializeToString()
-
-
-def halved(model: onnx.ModelProto) -> onnx.ModelProto:
-    """Store the large weights in half precision, with a cast where they are used."""
-    casts = []
-    for weight in model.graph.initializer:
-        array = numpy_helper.to_array(weight)
-        if weight.data_type != TensorProto.FLOAT or array.size < SMALLEST_HALVED:
-            continue
-        name = weight.name
-        half = numpy_helper.from_array(array.astype(np.float16), name + CAST)
-        weight.CopyFrom(half)
-        casts.append(helper.make_node("Cast", [name + CAST], [name], to=1))
-    nodes = [*casts, *model.graph.node]
-    del model.graph.node[:]
-    model.graph.node.extend(nodes)
-    onnx.checker.check_model(model, full_check=True)
-    return model
+    return shipped(buffer.getvalue())
 
 
 def rounded(network: MaskRCNN) -> MaskRCNN:
@@ -111,14 +90,6 @@ def open_shipped() -> session.Session:
     return session.load((folder / "segment.onnx").read_bytes(), sums["segment.onnx"])
 
 
-def lock(model: Path) -> None:
-    """Write a model's SHA-256 to the `models.lock` beside it, and leave the others."""
-    path = model.with_name("models.lock")
-    sums = json.loads(path.read_text()) if path.exists() else {}
-    sums[model.name] = hashlib.sha256(model.read_bytes()).hexdigest()
-    path.write_text(json.dumps(dict(sorted(sums.items())), indent=2) + "\n")
-
-
 def main() -> None:
     """Export, prove parity on labelled photographs, write the file and its lock."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -132,8 +103,7 @@ def main() -> None:
     worst = disparity(network, model, images)
     if not worst < TOLERANCE:
         raise SystemExit(f"the exported network differs by {worst}; nothing written")
-    args.into.write_bytes(model)
-    lock(args.into)
+    lock(args.into, model)
     print(f"{args.into}: {len(model) / 1e6:.1f} MB, differs by {worst:.2g} at most")
 
 
