@@ -26,11 +26,6 @@ class Order(NamedTuple):
     ranks: Int[np.ndarray, " n"]
     reach: int  # the greatest difference of rank between coupled unknowns
 
-    @property
-    def entries(self) -> int:
-        """Estimate the size of a factor."""
-        return len(self.ranks) * min(self.reach + 1, WIDEST)
-
 
 def order(unknown: Mask) -> Order:
     """Number the unknowns along their bands, so that neighbours have near numbers."""

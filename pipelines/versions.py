@@ -22,7 +22,7 @@ from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
     "segment": 1,
-    "matte": 1,
+    "matte": 2,
     "rectify": 1,
     "inpaint": 1,
     "block": 1,
