@@ -4,15 +4,21 @@ Figures are means over photos: precision, recall and l1 of all visible front (th
 paper's table 1, before matting), the share of fronts found at an overlap of a half,
 the overlap of target fronts (median), and the share of what hides fronts that was
 found. Far rows that cannot be told apart do not count.
+
+    python -m export.held_out DATA CHECKPOINT [CHECKPOINT]
 """
 
+import argparse
+import json
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import torch
 
-from export.mask_rcnn import MaskRCNN
-from export.segmentation_data import Sample, fill
+from export.mask_rcnn import MaskRCNN, load_weights
+from export.segmentation_data import Sample, fill, read_folder
+from export.weights import read_weights
 from nostalgin_core.measure_segmentation import agreement, overlap
 from nostalgin_core.records import Box, Instance, Photo, Rejection
 from nostalgin_core.segment import Network, segment
@@ -29,9 +35,19 @@ def as_callable(network: MaskRCNN) -> Network:
     return call
 
 
-def figures(network: MaskRCNN, samples: Sequence[Sample]) -> dict[str, float]:
-    """Judge a network in evaluation mode on labelled photos."""
-    rows = [judged(s, found(as_callable(network), s)) for s in samples]
+def together(*networks: Network) -> Network:
+    """Let several networks answer as one, as the paper's two do."""
+
+    def call(gray: np.ndarray) -> tuple[np.ndarray, ...]:
+        answers = [network(gray) for network in networks]
+        return tuple(np.concatenate(parts) for parts in zip(*answers, strict=True))
+
+    return call
+
+
+def figures(network: Network, samples: Sequence[Sample]) -> dict[str, float]:
+    """Judge a network on labelled photos."""
+    rows = [judged(s, found(network, s)) for s in samples]
     names = [n for n in rows[0] if n not in ("fronts", "targets")]
     means = {n: [r[n] for r in rows if not np.isnan(r[n])] for n in names}
     result = {n: float(np.mean(v)) for n, v in means.items() if v}
@@ -94,3 +110,22 @@ def _whole(instance: Instance, shape: tuple[int, int]) -> np.ndarray:
     x0, y0, x1, y1 = instance.box
     canvas[y0:y1, x0:x1] = instance.probability
     return canvas
+
+
+def main() -> None:
+    """Print the held-out figures of checkpoints that answer together, as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("data", type=Path)
+    parser.add_argument("weights", type=Path, nargs="+", help=".pt, .npz or .onnx")
+    args = parser.parse_args()
+    torch.set_num_threads(1)
+    samples = read_folder(args.data / "taxphotos", held_out=True)
+    networks = [
+        as_callable(load_weights(MaskRCNN(), read_weights(path)).eval())
+        for path in args.weights
+    ]
+    print(json.dumps(figures(together(*networks), samples)))
+
+
+if __name__ == "__main__":
+    main()

@@ -20,12 +20,14 @@ import torch
 from torch import Tensor
 
 from export.copy_paste import Donor, donors, paste
-from export.held_out import figures
+from export.held_out import as_callable, figures
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.painted_segmentation_data import read_painted
-from export.segmentation_data import Sample, read_folder, truth, view
+from export.segmentation_data import UNSCORED, Sample, read_folder, truth, view
 from export.wear import wear
 from export.weights import read_weights
+from nostalgin_core.records import Category
+from nostalgin_core.segment import CATEGORIES
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,7 @@ class Schedule:
     decay: float = 0.995  # of the average: about the last 200 steps
     short_px: tuple[int, int] = (352, 544)  # between which a photo's short side falls
     seed: int = 0
+    answering: tuple[Category, ...] = CATEGORIES  # the paper's two networks share these
 
     def rate_at(self, step: int) -> float:
         """Return the learning rate of a step."""
@@ -90,7 +93,7 @@ def advance(
     sums: dict[str, float] = {}
     for turn in range(schedule.batch):
         rng = np.random.default_rng([schedule.seed, run.step, turn])
-        gray, answers = drawn(pools, cut, rng, short_px=schedule.short_px)
+        gray, answers = drawn(pools, cut, rng, schedule)
         losses = run.network(gray, answers)
         torch.stack(list(losses.values())).sum().div(schedule.batch).backward()
         for name, loss in losses.items():
@@ -117,23 +120,25 @@ def drawn(
     pools: Sequence[Sequence[Sample]],
     cut: Sequence[Donor],
     rng: np.random.Generator,
-    *,
-    short_px: tuple[int, int],
+    schedule: Schedule,
 ) -> tuple[Tensor, list[dict[str, Tensor]]]:
     """Draw one photo, dress it up, and return it with what should be answered."""
+    short_px = schedule.short_px
+    wanted = [CATEGORIES.index(name) + 1 for name in schedule.answering]
     while True:
         pool = pools[int(rng.integers(len(pools)))]
         sample = view(pool[int(rng.integers(len(pool)))], rng, short_px=short_px)
         if rng.random() < 0.5:
             sample = paste(sample, cut, rng)
         answer = truth(sample)
-        if (answer.labels > 0).any():
+        if np.isin(answer.labels, wanted).any():
             break
+    kept = np.isin(answer.labels, [*wanted, UNSCORED])
     gray = torch.from_numpy(wear(sample.image, rng).astype(np.float32))[None, None]
     target = {
-        "boxes": torch.from_numpy(answer.boxes),
-        "labels": torch.from_numpy(answer.labels),
-        "masks": torch.from_numpy(answer.masks.astype(np.uint8)),
+        "boxes": torch.from_numpy(answer.boxes[kept]),
+        "labels": torch.from_numpy(answer.labels[kept]),
+        "masks": torch.from_numpy(answer.masks[kept].astype(np.uint8)),
     }
     return gray.to(memory_format=torch.channels_last), [target]
 
@@ -168,7 +173,12 @@ def main() -> None:
     """Train, log, measure on the held-out block, and keep checkpoints."""
     args = _arguments()
     torch.set_num_threads(args.threads)
-    schedule = Schedule(steps=args.steps, rate=args.rate, seed=args.seed)
+    schedule = Schedule(
+        steps=args.steps,
+        rate=args.rate,
+        seed=args.seed,
+        answering=tuple(args.answering),
+    )
     real = [read_folder(args.data / n) for n in ("taxphotos", "historic_streets")]
     painted = read_painted(args.painted) if args.painted else []
     # Each pool is drawn evenly: two real photos of either set to one that is painted.
@@ -190,7 +200,7 @@ def main() -> None:
             if run.step % args.save_every == 0:
                 save(run, checkpoint)
             if run.step % args.judge_every == 0:
-                row["held_out"] = figures(averaged(run), judged)
+                row["held_out"] = figures(as_callable(averaged(run)), judged)
                 save(run, args.into / f"step{run.step:05d}.pt")
             log.write(json.dumps(row) + "\n")
             log.flush()
@@ -206,6 +216,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--painted", type=Path, help="folder of painted photos")
     parser.add_argument("--steps", type=int, default=usual.steps)
     parser.add_argument("--rate", type=float, default=usual.rate)
+    parser.add_argument(
+        "--answering", nargs="+", choices=CATEGORIES, default=usual.answering
+    )
     parser.add_argument("--seed", type=int, default=usual.seed)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--save-every", type=int, default=50)

@@ -1,3 +1,5 @@
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,9 +9,9 @@ torch = pytest.importorskip("torch")
 pytest.importorskip("torchvision")
 
 from export.copy_paste import donors  # noqa: E402
-from export.held_out import judged  # noqa: E402
+from export.held_out import judged, together  # noqa: E402
 from export.mask_rcnn import MaskRCNN, freeze, load_weights  # noqa: E402
-from export.segmentation_data import fill  # noqa: E402
+from export.segmentation_data import UNSCORED, fill  # noqa: E402
 from export.train_mask_rcnn import (  # noqa: E402
     Schedule,
     advance,
@@ -59,6 +61,26 @@ def test_a_stem_that_saw_colour_sees_gray_the_same() -> None:
     torch.testing.assert_close(stem(gray), want, atol=1e-5, rtol=1e-4)
 
 
+def test_a_network_may_answer_some_things_alone() -> None:
+    fronts = replace(SHORT, answering=("facade",))
+    for seed in range(4):
+        (every,) = drawn(POOLS, CUT, np.random.default_rng(seed), SHORT)[1]
+        (some,) = drawn(POOLS, CUT, np.random.default_rng(seed), fronts)[1]
+        assert set(every["labels"].tolist()) > set(some["labels"].tolist())
+        assert set(some["labels"].tolist()) <= {1, UNSCORED}
+        assert torch.equal(some["masks"], every["masks"][every["labels"] <= 1])
+
+
+def test_networks_that_answer_together_answer_what_each_does() -> None:
+    def network(label: int) -> Callable[[np.ndarray], tuple[np.ndarray, ...]]:
+        box, mask = np.zeros((label, 4)), np.zeros((label, 46, 46))
+        return lambda _: (box, np.full(label, label), np.ones(label), mask)
+
+    boxes, labels, scores, masks = together(network(1), network(2))(np.zeros(1))
+    assert labels.tolist() == [1, 2, 2]
+    assert len(boxes) == len(scores) == len(masks) == 3
+
+
 def test_training_lowers_the_loss_and_leaves_what_is_frozen() -> None:
     run = begin(_weights(), SHORT)
     before = [p.clone() for p in run.network.backbone.body.stem.parameters()]
@@ -66,7 +88,7 @@ def test_training_lowers_the_loss_and_leaves_what_is_frozen() -> None:
     def loss() -> float:
         torch.manual_seed(0)
         seen = [np.random.default_rng([1, i]) for i in range(3)]
-        inputs = [drawn(POOLS, CUT, rng, short_px=(128, 160)) for rng in seen]
+        inputs = [drawn(POOLS, CUT, rng, SHORT) for rng in seen]
         with torch.no_grad():
             return sum(float(sum(run.network(*i).values())) for i in inputs)
 
