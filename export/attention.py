@@ -19,6 +19,8 @@ import torch
 import torch.nn.functional as F  # noqa: N812 - everybody's name for it
 from torch import Tensor, nn
 
+TINY = 1e-20  # a weight below this is none
+
 
 def patches(x: Tensor, *, size: int, stride: int) -> Tensor:
     """Cut centred patches: (b, c, h, w) -> (b, c * size * size, rows, columns).
@@ -78,6 +80,16 @@ def agree(scores: Tensor, *, stride: int) -> Tensor:
     return scores
 
 
+def decide(scores: Tensor, offered: Tensor) -> Tensor:
+    """Share one out among the patches offered, by their scores, the last axis.
+
+    A decided softmax is full of denormal numbers, and products with those would cost a
+    CPU more than all the rest of the network: they are made zero.
+    """
+    weights = torch.softmax(scores - 1e4 * (1 - offered), dim=-1)
+    return F.relu(weights - TINY) * offered
+
+
 class Attention(nn.Module):
     """Copy known features into the hole; where nothing is known, answer zero."""
 
@@ -126,10 +138,7 @@ class Attention(nn.Module):
         scores = agree(scores, stride=self.stride)
         scores = scores[:, self.stride : height - self.stride].flatten(3).flatten(1, 2)
         offered = known.flatten(1)[:, None]  # (b, 1, k)
-        weights = (
-            torch.softmax(scores * self.sharpness - 1e4 * (1 - offered), dim=2)
-            * offered
-        )
+        weights = decide(scores * self.sharpness, offered)
         rebuilt = torch.matmul(values, weights.transpose(1, 2))  # (b, 16c, f)
         return rebuilt.reshape(
             rebuilt.shape[0], rebuilt.shape[1], height - 2 * self.stride, width

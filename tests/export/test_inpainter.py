@@ -1,7 +1,7 @@
 import pytest
 import torch
 
-from export.attention import Attention, paste, patches
+from export.attention import Attention, decide, paste, patches
 from export.inpainter import Critic, Generator
 from export.inpainter_onnx import export, parity, session
 
@@ -71,6 +71,18 @@ def test_attention_copies_a_texture_into_the_hole(stride: int, period: int) -> N
 def test_attention_without_anything_known_answers_zero() -> None:
     x = torch.rand(1, 2, 16, 16)
     assert torch.equal(Attention()(x, torch.ones(1, 1, 16, 16)), torch.zeros_like(x))
+
+
+def test_weights_add_up_to_one_and_none_is_too_small_to_reckon_with() -> None:
+    scores = -torch.arange(0, 120, 0.25).reshape(1, 1, -1)
+    offered = torch.ones_like(scores)
+    offered[..., :4] = 0
+    weights = decide(scores, offered)
+    assert torch.isclose(weights.sum(), torch.tensor(1.0))
+    assert (weights[..., :4] == 0).all()
+    used = weights[weights > 0]
+    assert used.min() > 1e3 * torch.finfo(torch.float32).tiny
+    assert len(used) < scores.numel() - 4  # the softmax alone would use them all
 
 
 def test_even_kernels_are_refused() -> None:
