@@ -82,6 +82,9 @@ def rectification_command(
     keep: Annotated[
         Path | None, typer.Option(help="Folder to keep painted photos in.")
     ] = None,
+    sheet: Annotated[
+        Path | None, typer.Option(help="Folder for the labels' contact sheets.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Measure how well fronts are straightened, and the paper's table 2."""
@@ -98,6 +101,7 @@ def rectification_command(
             block=block,
             fronts=fronts,
             keep=keep,
+            sheets=sheet,
         )
     except Unmeasurable as problem:
         typer.secho(f"error: {problem}", fg="red", err=True)
@@ -105,3 +109,56 @@ def rectification_command(
     typer.echo(
         json.dumps(report, indent=1) if as_json else rectification_table.text(report)
     )
+
+
+INPAINTING_EXAMPLES = """
+Examples:
+
+  nostalgin evaluate inpainting DATA --most 40
+
+  nostalgin evaluate inpainting images --holes free --methods telea,ours-low-memory
+
+What widths and strides cost (the paper's table 4 and sweep) needs torch:
+python -m export.inpainter_costs
+"""
+
+
+@app.command("inpainting", epilog=INPAINTING_EXAMPLES)
+def inpainting_command(
+    folder: Annotated[
+        Path, typer.Argument(help="Images, or photos/ and labels/, or all the data.")
+    ],
+    *,
+    methods: Annotated[
+        str | None, typer.Option(help="Names, with commas; all by default.")
+    ] = None,
+    holes: Annotated[
+        str | None, typer.Option(help="free or foot; both by default.")
+    ] = None,
+    most: Annotated[
+        int | None, typer.Option(min=1, help="How many pictures at most.")
+    ] = None,
+    models: Annotated[
+        Path | None, typer.Option(help="Folder with other networks.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Measure how well holes are filled: the paper's table 3."""
+    from pipelines import models as shelf
+
+    shelf.one_thread()
+    from pipelines.evaluate import Unmeasurable, inpainting
+
+    try:
+        network = shelf.Models(str(models or shelf.PACKAGED)).load("inpaint")
+        report = inpainting.evaluate(
+            folder,
+            network,
+            wanted=methods,
+            holes=None if holes is None else (holes,),
+            most=most,
+        )
+    except (Unmeasurable, shelf.Unlocked) as problem:
+        typer.secho(f"error: {problem}", fg="red", err=True)
+        raise typer.Exit(1) from problem
+    typer.echo(json.dumps(report, indent=1) if as_json else inpainting.text(report))

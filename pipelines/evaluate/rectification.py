@@ -17,6 +17,7 @@ from pipelines.evaluate import (
     detectors,
     labelled,
     search_space,
+    sheet,
     streets,
     york_urban,
 )
@@ -45,6 +46,7 @@ def evaluate(
     fronts: int = FRONTS,
     seed: int = streets.SEED,
     keep: Path | None = None,
+    sheets: Path | None = None,
 ) -> dict[str, Any]:
     """Measure the parts that are asked for, with each detector of lines.
 
@@ -56,6 +58,7 @@ def evaluate(
         fronts: How many painted fronts to show.
         seed: Of the painted streets.
         keep: A folder for painted photos, which cost a CPU second each.
+        sheets: A folder for the labelled photographs' contact sheets.
 
     Raises:
         Unmeasurable: if a part or a detector has no such name, or a part no data.
@@ -74,7 +77,9 @@ def evaluate(
         report["york_urban"] = york_urban.evaluate(data / "york_urban", used)
     if "labels" in parts:
         report["labels"] = {
-            one.name: labelled.evaluate(one, used, block=block)
+            one.name: labelled.evaluate(
+                one, used, block=block, show=_shown(sheets, one.name)
+            )
             for one in holding(sets, block)
         }
     if "painted" in parts:
@@ -82,6 +87,13 @@ def evaluate(
     if "table2" in parts:
         report["table2"] = search_space.evaluate([one / "photos" for one in sets])
     return report
+
+
+def _shown(sheets: Path | None, name: str) -> labelled.Show | None:
+    """Write one set's contact sheets, a folder a detector, if they are wanted."""
+    if sheets is None:
+        return None
+    return lambda finder, photographs: sheet.write(photographs, sheets / name / finder)
 
 
 def present(data: Path) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """What `nostalgin evaluate rectification` prints: laws of each part's figures."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -9,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from nostalgin_core import camera, lines, manhattan
-from nostalgin_core.records import Box, Photo
+from nostalgin_core.records import Box, Photo, Rejection
 from pipelines import cli
 from pipelines.evaluate import (
     detectors,
@@ -17,6 +18,7 @@ from pipelines.evaluate import (
     peers,
     rectification_table,
     search_space,
+    sheet,
     york_urban,
 )
 from tests.data import DATA
@@ -91,8 +93,7 @@ def test_a_spoiled_label_errs_by_what_it_was_spoiled(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("detect", [detectors.lsd, detectors.hough])
-def test_other_detectors_find_a_painted_fronts_lines(detect: object) -> None:
-    assert callable(detect)
+def test_other_detectors_find_a_painted_fronts_lines(detect: lines.Detector) -> None:
     image = photograph().photo.image
     strict, loose = detect(image, (16, 4.0), (8, 9.0))
     assert len(loose) > 30
@@ -200,6 +201,28 @@ def test_two_images_of_york_urban_are_evaluated(tmp_path: Path) -> None:
     assert row["images"] == 2
     assert row["median_deg"] < 3
     assert 50 < row["horizon_auc"] <= 100
+
+
+def test_a_contact_sheet_shows_every_photograph_with_both_quads(tmp_path: Path) -> None:
+    folder = labelled_folder(tmp_path / "taxphotos")
+    (one,) = labelled.straightened(folder)
+    files = sheet.write([one] * 5, tmp_path / "pages")
+    assert [file.name for file in files] == ["page-01.jpg", "page-02.jpg"]
+    page = cv2.imread(str(files[0]))
+    assert page is not None
+    h, w = sheet.CELL
+    first, second = page[:h, :w], page[:h, w : 2 * w]
+    assert np.abs(first.astype(int) - second).mean() < 1  # the same photo, twice
+    drawn = sheet.quads(one).astype(int)
+    green = (drawn[..., 1] - drawn[..., 2] > 80).sum()
+    yellow = (drawn[..., 2] - drawn[..., 0] > 80).sum()
+    assert green > 200  # the target's quad
+    assert yellow > 200  # its neighbour's
+    refused = replace(
+        one, results=(Rejection("0" * 16, "rectify", "too few lines"),) * 2
+    )
+    drawn = sheet.quads(refused).astype(int)
+    assert (drawn[..., 2] - drawn[..., 1] > 80).sum() > 400
 
 
 def said(*arguments: str) -> tuple[int, str]:
