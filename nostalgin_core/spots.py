@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.catalogue import Entry
+from nostalgin_core.entry import Entry
 
 
 @dataclass(frozen=True, slots=True)

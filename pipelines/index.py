@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Final
 
 from nostalgin_core import catalogue, rings
-from nostalgin_core.catalogue import Catalogue, Entry
+from nostalgin_core.catalogue import Catalogue
+from nostalgin_core.entry import Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
 from pipelines import manifest
 from pipelines.store import Store
@@ -150,7 +151,7 @@ def from_names(names: Sequence[str], folder: str) -> Catalogue:
 
 def block_and_lot(name: str) -> tuple[str, str] | None:
     """Read block and lot from a file name, if it tells both."""
-    exact = catalogue.from_file_name(name)
+    exact = from_file_name(name)
     if exact is not None:
         return exact
     found = BLOCK_AND_LOT.search(Path(name).stem.strip().casefold())

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from nostalgin_core import block, catalogue, rings
-from nostalgin_core.catalogue import Entry
 from nostalgin_core.directions import directions
+from nostalgin_core.entry import Entry
 from nostalgin_core.records import Front
 from tests.data import DATA, needs_data
 
