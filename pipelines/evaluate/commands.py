@@ -85,6 +85,9 @@ def rectification_command(
     sheet: Annotated[
         Path | None, typer.Option(help="Folder for the labels' contact sheets.")
     ] = None,
+    pictures: Annotated[
+        Path | None, typer.Option(help="Folder for pictures of all detectors' lines.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Measure how well fronts are straightened, and the paper's table 2."""
@@ -102,6 +105,7 @@ def rectification_command(
             fronts=fronts,
             keep=keep,
             sheets=sheet,
+            drawn=pictures,
         )
     except Unmeasurable as problem:
         typer.secho(f"error: {problem}", fg="red", err=True)

@@ -72,14 +72,26 @@ def straightened(
     Raises:
         Unmeasurable: if a file can't be read as a photo.
     """
+    for label, image, fronts, matted in photographs(folder, block=block):
+        start = time.process_time()
+        results = rectify.rectify(image, matted, detector=detector)
+        seconds = time.process_time() - start
+        yield Labelled(label, image, fronts, results, seconds)
+
+
+def photographs(
+    folder: Path, *, block: str = ""
+) -> Iterator[tuple[dict[str, Any], Photo, list[dict[str, Any]], Matted]]:
+    """Read each label, its photo, its fronts and the masks that it makes.
+
+    Raises:
+        Unmeasurable: if a file can't be read as a photo.
+    """
     for label, file in labels.pairs(folder, block=block):
         image = photo.decode(file.read_bytes(), name=file.name)
         if isinstance(image, Rejection):
             raise Unmeasurable(f"{file}: {image.reason}: {image.detail}")
-        fronts, matted = matted_from(label, image)
-        start = time.process_time()
-        results = rectify.rectify(image, matted, detector=detector)
-        yield Labelled(label, image, fronts, results, time.process_time() - start)
+        yield label, image, *matted_from(label, image)
 
 
 def summed(photographs: list[Labelled]) -> dict[str, Any]:

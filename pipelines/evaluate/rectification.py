@@ -16,6 +16,7 @@ from pipelines.evaluate import (
     Unmeasurable,
     detectors,
     labelled,
+    pictures,
     search_space,
     sheet,
     streets,
@@ -47,6 +48,7 @@ def evaluate(
     seed: int = streets.SEED,
     keep: Path | None = None,
     sheets: Path | None = None,
+    drawn: Path | None = None,
 ) -> dict[str, Any]:
     """Measure the parts that are asked for, with each detector of lines.
 
@@ -59,6 +61,7 @@ def evaluate(
         seed: Of the painted streets.
         keep: A folder for painted photos, which cost a CPU second each.
         sheets: A folder for the labelled photographs' contact sheets.
+        drawn: A folder for their lines, and those of a painted photo, by all detectors.
 
     Raises:
         Unmeasurable: if a part or a detector has no such name, or a part no data.
@@ -84,6 +87,10 @@ def evaluate(
         }
     if "painted" in parts:
         report["painted"] = streets.evaluate(used, fronts=fronts, seed=seed, keep=keep)
+    if drawn is not None:
+        report["lines"] = lines_drawn(
+            holding(sets, block) if "labels" in parts else [], drawn, block, keep=keep
+        )
     if "table2" in parts:
         report["table2"] = search_space.evaluate([one / "photos" for one in sets])
     return report
@@ -94,6 +101,27 @@ def _shown(sheets: Path | None, name: str) -> labelled.Show | None:
     if sheets is None:
         return None
     return lambda finder, photographs: sheet.write(photographs, sheets / name / finder)
+
+
+def lines_drawn(
+    sets: list[Path], folder: Path, block: str, *, keep: Path | None
+) -> dict[str, Any]:
+    """Draw the lines of all detectors on labelled photographs and on a painted one."""
+    table = {}
+    for one in sets:
+        tables = [
+            pictures.write(
+                image, matted, DETECTORS, folder / one.name / f"{label['id']}.jpg"
+            )
+            for label, image, _, matted in labelled.photographs(one, block=block)
+        ]
+        table[one.name] = pictures.averaged(tables)
+    (painted,) = streets.paintings(1, keep=keep)
+    file = folder / "painted.jpg"
+    table["painted"] = pictures.averaged(
+        [pictures.write(painted.photo, painted.matted, DETECTORS, file)]
+    )
+    return table
 
 
 def present(data: Path) -> tuple[str, ...]:

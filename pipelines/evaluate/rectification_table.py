@@ -21,6 +21,7 @@ PAPER: Final = {
     "infinite points": "11.4 +- 19.1  10.1 +- 7.5",
     "both": "44.3 +- 18.7  35.6 +- 37.7",
 }
+LINES: Final = ("lines", "median_px", "up_lines", "level_lines", "silent_percent")
 UNITS: Final = {"horizontal": "deg", "vertical": "deg", "focal": "%", "aspect": "%"}
 
 Report = dict[str, Any]
@@ -32,6 +33,7 @@ def text(report: Report) -> str:
         "york_urban": york_urban,
         "labels": labels,
         "painted": painted,
+        "lines": line_methods,
         "table2": table_2,
     }
     lines: list[str] = []
@@ -110,6 +112,17 @@ def coverage(table: Report) -> list[str]:
                 "  ".join(f"{one:.2f}" for one in row["residuals"]),
             ]
             lines.append(_row(f"{quantity}, {method}", cells))
+    return lines
+
+
+def line_methods(sets: Report) -> list[str]:
+    """Write how many lines each method lets speak, and how many vote for nothing."""
+    heads = ["photos", "lines", "median px", "up", "level", "silent %"]
+    lines = ["Lines on fronts, means over photos", _row("", heads)]
+    for name, methods in sets.items():
+        for method, row in methods.items():
+            cells = [str(row["photographs"]), *(said(row[key]) for key in LINES)]
+            lines.append(_row(f"{name}, {method}", cells))
     return lines
 
 

@@ -3,7 +3,7 @@
 Four photographs a page, and pages are numbered. In the photo, labelled quads are drawn
 white, ours of target fronts green and of others yellow; a labelled front that was
 refused is red. Each elevation has its front's number, its method's first letter, its
-aspect ratio and the labelled quad's worst angle in degrees; what no camera saw is black.
+aspect ratio and the labelled quad's worst angle in degrees; black was not seen.
 """
 
 from pathlib import Path
