@@ -18,7 +18,7 @@ from functools import partial
 from typing import Final
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, Int
 
 from nostalgin_core import closed_form, facade
 from nostalgin_core.arrays import Gray, Mask, Probability
@@ -34,7 +34,7 @@ from nostalgin_core.trimap import (
 )
 
 EPSILON: Final = 1e-5  # film grain has a standard deviation of 0.003 to 0.01
-BELIEF: Final = 0.02  # in the network, where the image shows no edge
+BELIEF: Final = 0.01  # in the network, where the image shows no edge
 _HIDDEN: Final = 0.95  # of a pixel: as good as wholly hidden
 _FAR: Final = 1e6  # px: farther than any photo is wide
 _MARGIN_PX: Final = 4  # round a band: a window, and the known pixels beside it
@@ -152,19 +152,50 @@ def _shares(
     """Share each pixel among the fronts: the nearest takes it, but for matted seams.
 
     Half the difference of two fronts' depths is the distance to the middle between
-    them, wherever they touch, overlap or leave a gap.
+    them, wherever they touch, overlap or leave a gap. Fronts stand in a row, so every
+    other one is told from those between, all seams in one go; where two of a kind meet,
+    the middle parts them.
     """
-    depths = np.stack([signed_distance(whole) for whole in wholes]).clip(-_FAR, _FAR)
+    if not (seen > 0).any():
+        return [np.zeros_like(seen) for _ in wholes]
+    part = _around(seen > 0)
+    first, second, middle = _nearest([whole[part] for whole in wholes])
+    odd = first % 2 == 1
+    seam = (middle < seam_px) & (first % 2 != second % 2) & (seen[part] > 1 - _HIDDEN)
+    known = np.full(seen.shape, BACKGROUND, np.uint8)
+    known[part] = np.where(seam, UNKNOWN, np.where(odd, FOREGROUND, BACKGROUND))
+    away = np.minimum(middle / seam_px, 1.0)
+    believed = np.zeros_like(seen)
+    believed[part] = 0.5 + 0.5 * np.where(odd, away, -away)
+    of_odd = solve(known, believed)[part]
+    of_first = np.where(odd, of_odd, 1 - of_odd)
     shares = []
-    for i, depth in enumerate(depths):
-        other = np.max(np.delete(depths, i, axis=0), axis=0, initial=-_FAR)
-        middle = np.clip((depth - other) / 2, -seam_px, seam_px)
-        known = np.where(middle >= 0, FOREGROUND, BACKGROUND).astype(np.uint8)
-        known[(np.abs(middle) < seam_px) & (seen > 1 - _HIDDEN)] = UNKNOWN
-        believed = (0.5 + 0.5 * middle / seam_px).astype(np.float32)
-        shares.append(solve(known, believed))
-    total = np.maximum(np.sum(shares, axis=0), 1e-3)
-    return [share / total for share in shares]
+    for i in range(len(wholes)):
+        share = np.zeros_like(seen)
+        share[part] = np.where(first == i, of_first, 0.0)
+        share[part] += np.where(second == i, 1 - of_first, 0.0)
+        shares.append(share)
+    return shares
+
+
+def _nearest(
+    wholes: Sequence[Mask],
+) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"], _Soft]:
+    """Tell which front is deepest at each pixel, which is next, and half by how much.
+
+    A single front has none beside it: its second is -1, infinitely far.
+    """
+    shape = wholes[0].shape
+    first, second = np.zeros(shape, np.intp), np.full(shape, -1)
+    deepest, deep = np.full(shape, -_FAR, np.float32), np.full(shape, -_FAR, np.float32)
+    for i, whole in enumerate(wholes):
+        depth = signed_distance(whole).clip(-_FAR / 2, _FAR / 2)
+        leads, follows = depth > deepest, depth > deep
+        second = np.where(leads, first if i else second, np.where(follows, i, second))
+        deep = np.where(leads, deepest, np.where(follows, depth, deep))
+        first = np.where(leads, i, first)
+        deepest = np.maximum(deepest, depth)
+    return first, second, (deepest - deep) / 2
 
 
 def _occluder(instance: Instance, hidden: _Soft, least: float) -> Occluder:

@@ -55,6 +55,8 @@ def signed_distance(inside: Mask) -> Float32[np.ndarray, "h w"]:
         far = np.inf if inside.all() else -np.inf
         return np.full(inside.shape, far, np.float32)
     cells = inside.astype(np.uint8)
-    within = cv2.distanceTransform(cells, cv2.DIST_L2, 5)
-    outside = cv2.distanceTransform(1 - cells, cv2.DIST_L2, 5)
-    return np.where(inside, within - 0.5, 0.5 - outside).astype(np.float32)
+    depth = cv2.distanceTransform(cells, cv2.DIST_L2, 5)
+    depth -= cv2.distanceTransform(1 - cells, cv2.DIST_L2, 5)
+    depth -= cells  # half a pixel less inside, half a pixel more outside
+    depth += np.float32(0.5)
+    return depth.astype(np.float32, copy=False)

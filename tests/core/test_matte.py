@@ -65,10 +65,6 @@ def test_what_stands_before_a_front_is_taken_off(matted: Matted) -> None:
         assert front.alpha[core].max() < 0.5
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="the capped band loses a corner of the car: 1.2 % of its core keeps a trace",
-)
 def test_hardly_a_trace_is_left_of_what_stands_before_a_front(matted: Matted) -> None:
     core = cv2.erode(CAR, np.ones((9, 9))) > 0
     for front in matted.facades:
