@@ -7,9 +7,9 @@ from nostalgin_core.records import Box
 from nostalgin_core.scenes import film, lens, surface, viewpoint
 from nostalgin_core.scenes.composite import Plane, shrink, soften, spread
 from nostalgin_core.scenes.lens import Camera
+from nostalgin_core.scenes.lot import Lot, Wall
 from nostalgin_core.scenes.scenery import Clad, panel
 from nostalgin_core.scenes.sprite import Sprite
-from nostalgin_core.scenes.street import Lot, Wall
 from nostalgin_core.scenes.surface import Canvas
 from nostalgin_core.scenes.truth import TrueFacade, TrueOccluder
 

@@ -1,6 +1,7 @@
 """The painted archive's own list, in the columns of the city's real one."""
 
-from nostalgin_core.scenes.street import Lot, Neighbourhood
+from nostalgin_core.scenes.lot import Lot
+from nostalgin_core.scenes.street import Neighbourhood
 
 FOOT_M = 0.3048
 BLANK = (

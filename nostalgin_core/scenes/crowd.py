@@ -5,8 +5,9 @@ import numpy as np
 from nostalgin_core.scenes import cars, lens, people, props
 from nostalgin_core.scenes.ground import PAVEMENT_M
 from nostalgin_core.scenes.lens import Camera
+from nostalgin_core.scenes.lot import OUTWARD, Lot
 from nostalgin_core.scenes.sprite import Sprite
-from nostalgin_core.scenes.street import OUTWARD, Lot, PaintedBlock
+from nostalgin_core.scenes.street import PaintedBlock
 
 REACH_M = 75.0
 

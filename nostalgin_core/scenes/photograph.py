@@ -13,9 +13,10 @@ from nostalgin_core.scenes.account import true_facades, true_occluders
 from nostalgin_core.scenes.catalogue import photo_name
 from nostalgin_core.scenes.composite import SUPER, composite, shrink, soften
 from nostalgin_core.scenes.lens import Camera
+from nostalgin_core.scenes.lot import Lot
 from nostalgin_core.scenes.scenery import Wear, build
 from nostalgin_core.scenes.sprite import Sprite
-from nostalgin_core.scenes.street import Lot, Neighbourhood, PaintedBlock
+from nostalgin_core.scenes.street import Neighbourhood, PaintedBlock
 from nostalgin_core.scenes.truth import PaintedPhoto, Truth
 
 

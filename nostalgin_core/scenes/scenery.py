@@ -8,9 +8,10 @@ import numpy as np
 from nostalgin_core.arrays import Gray
 from nostalgin_core.scenes import front, ground, relief, surface, viewpoint
 from nostalgin_core.scenes import wall as masonry
-from nostalgin_core.scenes.front import FrontStyle
 from nostalgin_core.scenes.lens import Camera
-from nostalgin_core.scenes.street import PaintedBlock, Wall
+from nostalgin_core.scenes.lot import Wall
+from nostalgin_core.scenes.street import PaintedBlock
+from nostalgin_core.scenes.style import FrontStyle
 from nostalgin_core.scenes.surface import Canvas, Panel
 
 PX_PER_M = 40.0  # of a texture: what a tax photo resolves

@@ -9,9 +9,9 @@ import numpy as np
 from nostalgin_core.arrays import Gray, Mask
 from nostalgin_core.records import Category
 from nostalgin_core.scenes import front
-from nostalgin_core.scenes.front import FrontStyle
 from nostalgin_core.scenes.photograph import photograph
 from nostalgin_core.scenes.street import neighbourhood
+from nostalgin_core.scenes.style import FrontStyle, style_for
 
 POOL = 96  # painted fronts that training photos share, for painting is the slow part
 STRETCH = 1.35  # how far a texture may be from its front's aspect
@@ -80,7 +80,7 @@ def pool_style(number: int) -> FrontStyle:
     """Give the style of one front of the pool."""
     rng = np.random.default_rng([1940, number])
     sun = (float(rng.uniform(-0.7, 0.7)), 0.6, float(rng.uniform(-0.5, 0.8)))
-    return front.style(rng, width_m=float(rng.uniform(6.0, 19.0)), sun=sun)
+    return style_for(rng, width_m=float(rng.uniform(6.0, 19.0)), sun=sun)
 
 
 @functools.lru_cache(maxsize=POOL)

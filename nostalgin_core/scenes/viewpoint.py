@@ -4,7 +4,8 @@ import numpy as np
 
 from nostalgin_core.scenes import lens
 from nostalgin_core.scenes.lens import Camera
-from nostalgin_core.scenes.street import AVENUE_M, OUTWARD, STREET_M, Lot, Wall
+from nostalgin_core.scenes.lot import OUTWARD, Lot, Wall
+from nostalgin_core.scenes.street import AVENUE_M, STREET_M
 
 EYE_M = 1.55
 FOCAL_WIDTHS = 1.2  # focal length of the tax photos, in picture widths (median of 98)

@@ -2,25 +2,26 @@ import numpy as np
 import pytest
 
 from nostalgin_core.scenes import front
+from nostalgin_core.scenes.style import KINDS, STOREYS, FrontStyle, Kind, style_for
 
 
-@pytest.mark.parametrize("kind", front.KINDS)
-def test_a_texture_has_the_size_of_its_front(kind: front.Kind) -> None:
-    style = front.style(np.random.default_rng(3), width_m=7.5, kind=kind)
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_texture_has_the_size_of_its_front(kind: Kind) -> None:
+    style = style_for(np.random.default_rng(3), width_m=7.5, kind=kind)
     texture = front.paint(style, px_per_m=20.0)
     assert texture.shape == (round(20 * style.height_m), 150)
 
 
-@pytest.mark.parametrize("kind", front.KINDS)
-def test_the_same_style_paints_the_same_bytes(kind: front.Kind) -> None:
-    style = front.style(np.random.default_rng(4), width_m=9.0, kind=kind)
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_same_style_paints_the_same_bytes(kind: Kind) -> None:
+    style = style_for(np.random.default_rng(4), width_m=9.0, kind=kind)
     assert np.array_equal(
         front.paint(style, px_per_m=20.0), front.paint(style, px_per_m=20.0)
     )
 
 
-def house(seed: int, kind: front.Kind) -> front.FrontStyle:
-    return front.FrontStyle(
+def house(seed: int, kind: Kind) -> FrontStyle:
+    return FrontStyle(
         seed=seed,
         kind=kind,
         width_m=7.0,
@@ -48,7 +49,7 @@ def test_windows_are_darker_than_the_wall_between_them() -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_storeys_stay_within_their_kind(seed: int) -> None:
-    style = front.style(np.random.default_rng(seed), width_m=8.0)
-    least, most = front.STOREYS[style.kind]
+    style = style_for(np.random.default_rng(seed), width_m=8.0)
+    least, most = STOREYS[style.kind]
     assert least <= style.storeys <= most
     assert style.height_m > style.base_m + style.crown_m - 1e-9

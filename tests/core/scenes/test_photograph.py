@@ -6,6 +6,7 @@ import pytest
 
 from nostalgin_core import homography, scenes
 from nostalgin_core.scenes import viewpoint
+from nostalgin_core.scenes.lot import Wall
 
 SHAPE = (840, 560)
 
@@ -32,7 +33,7 @@ def photo(
     return scenes.photograph(town, lot, np.random.default_rng(5), shape=SHAPE)
 
 
-def wall_of(town: scenes.Neighbourhood, front_id: str) -> scenes.street.Wall:
+def wall_of(town: scenes.Neighbourhood, front_id: str) -> Wall:
     return next(
         wall
         for block in (*town.blocks, *town.around)
