@@ -50,6 +50,8 @@ def voted(photo: Photo, matted: Matted, detector: lines.Detector) -> Voted:
     A line belongs to the front that most of it lies on, and votes for that front's
     horizontal point or for the vertical one; of no front, it is left out.
     """
+    if not matted.facades:
+        return Voted(np.empty((0, 4)), np.empty(0, np.intp))
     world = orient.orient(photo, matted.facades, detector=detector).world
     clear = [orient.unhidden(facade) for facade in matted.facades]
     anywhere = np.any(clear, axis=0) & inside_frame(photo)

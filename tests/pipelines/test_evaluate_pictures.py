@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from nostalgin_core import lines
+from nostalgin_core.records import Matted
 from pipelines.evaluate import detectors, pictures
 from tests.painted_front import photograph
 
@@ -26,6 +27,11 @@ def test_every_line_votes_for_up_for_its_own_front_or_for_nothing() -> None:
         grown = cv2.dilate(facade.amodal.astype(np.uint8), np.ones((9, 9), np.uint8))
         assert np.all(grown[y, x] > 0)
     assert set(found.axis.tolist()) <= {-1, 0, 1, 2}
+
+
+def test_a_photo_without_a_front_has_no_line_that_speaks() -> None:
+    nothing = pictures.voted(photograph().photo, Matted((), ()), lines.detect)
+    assert pictures.figures(nothing)["lines"] == 0
 
 
 def test_figures_count_what_is_drawn() -> None:
