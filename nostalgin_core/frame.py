@@ -5,6 +5,8 @@ ends at a sharp straight edge, unlike a dark wall or a night sky. A print whose 
 was cut has none, and then the frame is the whole image.
 """
 
+from functools import partial
+
 import numpy as np
 
 from nostalgin_core.arrays import Gray
@@ -48,23 +50,42 @@ def exposed(
     rows = image[:, int(_SPAN[0] * w) : int(np.ceil(_SPAN[1] * w))]
     columns = image[int(_SPAN[0] * h) : int(np.ceil(_SPAN[1] * h))].T
 
-    def border(lines: Gray) -> int:
-        """Count the lines of border, from the outermost one inwards."""
-        n = len(lines)
-        lines = lines[: max(3, int(depth * n))]
-        reach = max(6, round(edge * n))
-        level = float(np.median(lines, axis=1).min())
-        if level > darkest:
-            return 0
-        share = (lines <= level + step).mean(axis=1)
-        dark = np.flatnonzero(share >= even)
-        if len(dark) == 0 or dark[0] > reach:
-            return 0
-        gaps = np.flatnonzero(np.diff(dark) > 1)
-        last = int(dark[gaps[0]] if len(gaps) else dark[-1])
-        outside = np.flatnonzero(share[last : last + reach + 1] < left)
-        return last + int(outside[0]) if len(outside) else 0
-
+    border = partial(
+        _border,
+        depth=depth,
+        darkest=darkest,
+        step=step,
+        even=even,
+        left=left,
+        edge=edge,
+    )
     x0, y0 = border(columns), border(rows)
     x1, y1 = w - border(columns[::-1]), h - border(rows[::-1])
     return Box(x0, y0, x1, y1)
+
+
+def _border(
+    lines: Gray,
+    *,
+    depth: float,
+    darkest: float,
+    step: float,
+    even: float,
+    left: float,
+    edge: float,
+) -> int:
+    """Count the lines of border, from the outermost one inwards."""
+    n = len(lines)
+    lines = lines[: max(3, int(depth * n))]
+    reach = max(6, round(edge * n))
+    level = float(np.median(lines, axis=1).min())
+    if level > darkest:
+        return 0
+    share = (lines <= level + step).mean(axis=1)
+    dark = np.flatnonzero(share >= even)
+    if len(dark) == 0 or dark[0] > reach:
+        return 0
+    gaps = np.flatnonzero(np.diff(dark) > 1)
+    last = int(dark[gaps[0]] if len(gaps) else dark[-1])
+    outside = np.flatnonzero(share[last : last + reach + 1] < left)
+    return last + int(outside[0]) if len(outside) else 0

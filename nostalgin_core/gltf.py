@@ -9,35 +9,29 @@ photographs, and masked, for blending can't be sorted inside a block.
 The axes are glTF's: (x, y, z) = (east, up, -north), in metres.
 """
 
-import json
-import struct
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from nostalgin_core.buffer import (
+    ELEMENT_ARRAY_BUFFER,
+    Buffer,
+    Json,
+    accessor,
+    container,
+    strings,
+    vertices,
+    view,
+)
 from nostalgin_core.picture import Picture
 from nostalgin_core.records import Mesh
 
-Json = dict[str, Any]
 Column = Sequence[str] | np.ndarray
 
-FLOAT, UNSIGNED_SHORT, UNSIGNED_INT = 5126, 5123, 5125
-ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 NEAREST, LINEAR, LINEAR_MIPMAP_LINEAR, CLAMP_TO_EDGE = 9728, 9729, 9987, 33071
 COMPONENTS = {"float32": "FLOAT32", "int32": "INT32", "uint8": "UINT8"}
 VARIANTS = ("photograph", "evidence")
-
-
-@dataclass(slots=True)
-class Buffer:
-    """The binary chunk while it grows, and the views into it."""
-
-    data: bytearray = field(default_factory=bytearray)
-    views: list[Json] = field(default_factory=list)
-    accessors: list[Json] = field(default_factory=list)
-    known: dict[tuple[bytes, str, str], int] = field(default_factory=dict)
 
 
 def glb(
@@ -58,17 +52,10 @@ def glb(
     Raises:
         ValueError: if a column of the table has not one row a building.
     """
-    for column, values in table.items():
-        if len(values) != len(buildings):
-            raise ValueError(
-                f"column {column!r}: {len(values)} rows, {len(buildings)} buildings"
-            )
+    _check(table, len(buildings))
     buffer = Buffer()
     meshes = [_mesh(buffer, node, mesh, len(buildings)) for node, mesh in buildings]
-    images = [
-        _image(buffer, colours, VARIANTS[0]),
-        _image(buffer, evidence, VARIANTS[1]),
-    ]
+    looks = _looks(buffer, colours, evidence)
     webp = colours.mime == "image/webp"
     extensions = {
         "KHR_materials_variants": {"variants": [{"name": name} for name in VARIANTS]},
@@ -84,19 +71,19 @@ def glb(
         "scenes": [{"name": name, "nodes": [0]}],
         "nodes": _nodes(name, [node for node, _ in buildings]),
         "meshes": meshes,
-        "materials": [
-            _material(variant, index) for index, variant in enumerate(VARIANTS)
-        ],
-        "textures": [_texture(0, webp=webp), _texture(1, webp=False)],
-        "samplers": [
-            _sampler(LINEAR, LINEAR_MIPMAP_LINEAR),
-            _sampler(NEAREST, NEAREST),
-        ],
-        "images": images,
+        **looks,
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
     }
-    return _container(document, bytes(buffer.data))
+    return container(document, bytes(buffer.data))
+
+
+def _check(table: Mapping[str, Column], buildings: int) -> None:
+    for column, values in table.items():
+        if len(values) != buildings:
+            raise ValueError(
+                f"column {column!r}: {len(values)} rows, {buildings} buildings"
+            )
 
 
 def _asset(rights: str, extras: Mapping[str, Any]) -> Json:
@@ -122,16 +109,14 @@ def _mesh(buffer: Buffer, name: str, mesh: Mesh, buildings: int) -> Json:
     index_dtype = np.uint16 if len(mesh.positions_m) < 65535 else np.uint32
     primitive = {
         "attributes": {
-            "POSITION": _vertices(
+            "POSITION": vertices(
                 buffer, np.column_stack([east, up, -north]), "VEC3", bounds=True
             ),
-            "NORMAL": _vertices(
-                buffer, np.column_stack([across, rise, -along]), "VEC3"
-            ),
-            "TEXCOORD_0": _vertices(buffer, mesh.uvs, "VEC2"),
-            "_FEATURE_ID_0": _vertices(buffer, mesh.features, "SCALAR"),
+            "NORMAL": vertices(buffer, np.column_stack([across, rise, -along]), "VEC3"),
+            "TEXCOORD_0": vertices(buffer, mesh.uvs, "VEC2"),
+            "_FEATURE_ID_0": vertices(buffer, mesh.features, "SCALAR"),
         },
-        "indices": _accessor(
+        "indices": accessor(
             buffer,
             mesh.triangles.ravel().astype(index_dtype),
             "SCALAR",
@@ -156,54 +141,33 @@ def _mesh(buffer: Buffer, name: str, mesh: Mesh, buildings: int) -> Json:
     return {"name": name, "primitives": [primitive]}
 
 
-def _vertices(
-    buffer: Buffer, values: np.ndarray, kind: str, *, bounds: bool = False
-) -> int:
-    # adding zero turns -0.0, which prints differently, into 0.0
-    array = np.ascontiguousarray(values, np.float32) + np.float32(0.0)
-    return _accessor(buffer, array, kind, target=ARRAY_BUFFER, bounds=bounds)
+def _looks(buffer: Buffer, colours: Picture, evidence: Picture) -> Json:
+    """Write both variants: the photograph, filtered, and the evidence, texel by texel.
 
-
-def _accessor(
-    buffer: Buffer, array: np.ndarray, kind: str, *, target: int, bounds: bool = False
-) -> int:
-    """Add an array and return its accessor; equal arrays share one."""
-    data = array.tobytes()
-    same = (data, kind, array.dtype.str)
-    if same in buffer.known:
-        return buffer.known[same]
-    code = {"f": FLOAT, "H": UNSIGNED_SHORT, "I": UNSIGNED_INT}[array.dtype.char]
-    accessor: Json = {
-        "bufferView": _view(buffer, data, target=target),
-        "componentType": code,
-        "count": len(array),
-        "type": kind,
+    A code between two others would be a third one, so evidence is never filtered.
+    """
+    return {
+        "materials": [
+            _material(variant, index) for index, variant in enumerate(VARIANTS)
+        ],
+        "textures": [
+            _texture(0, webp=colours.mime == "image/webp"),
+            _texture(1, webp=False),
+        ],
+        "samplers": [
+            _sampler(LINEAR, LINEAR_MIPMAP_LINEAR),
+            _sampler(NEAREST, NEAREST),
+        ],
+        "images": [
+            _image(buffer, colours, VARIANTS[0]),
+            _image(buffer, evidence, VARIANTS[1]),
+        ],
     }
-    if bounds:
-        accessor["min"] = [float(value) for value in array.min(axis=0)]
-        accessor["max"] = [float(value) for value in array.max(axis=0)]
-    buffer.accessors.append(accessor)
-    buffer.known[same] = len(buffer.accessors) - 1
-    return buffer.known[same]
-
-
-def _view(buffer: Buffer, data: bytes, *, target: int | None = None) -> int:
-    buffer.data.extend(bytes(-len(buffer.data) % 8))  # the property table wants 8
-    view: Json = {
-        "buffer": 0,
-        "byteOffset": len(buffer.data),
-        "byteLength": len(data),
-    }
-    if target is not None:
-        view["target"] = target
-    buffer.data.extend(data)
-    buffer.views.append(view)
-    return len(buffer.views) - 1
 
 
 def _image(buffer: Buffer, picture: Picture, name: str) -> Json:
-    view = _view(buffer, picture.data)
-    return {"name": name, "bufferView": view, "mimeType": picture.mime}
+    data = view(buffer, picture.data)
+    return {"name": name, "bufferView": data, "mimeType": picture.mime}
 
 
 def _texture(index: int, *, webp: bool) -> Json:
@@ -243,10 +207,10 @@ def _metadata(buffer: Buffer, table: Mapping[str, Column], count: int) -> Json:
         if isinstance(values, np.ndarray):
             kind = COMPONENTS[values.dtype.name]
             properties[name] = {"type": "SCALAR", "componentType": kind}
-            columns[name] = {"values": _view(buffer, values.tobytes())}
+            columns[name] = {"values": view(buffer, values.tobytes())}
         else:
             properties[name] = {"type": "STRING"}
-            columns[name] = _strings(buffer, values)
+            columns[name] = strings(buffer, values)
     return {
         "schema": {
             "id": "nostalgin",
@@ -256,32 +220,3 @@ def _metadata(buffer: Buffer, table: Mapping[str, Column], count: int) -> Json:
             {"class": "building", "count": count, "properties": columns}
         ],
     }
-
-
-def _strings(buffer: Buffer, values: Sequence[str]) -> Json:
-    encoded = [value.encode() for value in values]
-    offsets = np.cumsum([0] + [len(item) for item in encoded]).astype(np.uint32)
-    # a view may not be empty: with no text at all one byte stands there unread
-    return {
-        "values": _view(buffer, b"".join(encoded) or b"\0"),
-        "stringOffsets": _view(buffer, offsets.tobytes()),
-        "stringOffsetType": "UINT32",
-    }
-
-
-def _container(document: Json, binary: bytes) -> bytes:
-    """Join both chunks, each padded so that the whole is a multiple of 8 bytes."""
-    binary += bytes(-len(binary) % 8)
-    document = {**document, "buffers": [{"byteLength": len(binary)}]}
-    text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
-    text += b" " * (-(len(text) + 4) % 8)  # 12 + 8 bytes stand before it
-    total = 12 + 8 + len(text) + 8 + len(binary)
-    return b"".join(
-        [
-            struct.pack("<4sII", b"glTF", 2, total),
-            struct.pack("<I4s", len(text), b"JSON"),
-            text,
-            struct.pack("<I4s", len(binary), b"BIN\0"),
-            binary,
-        ]
-    )
