@@ -10,20 +10,17 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
 import typer
 from rich.console import Console
 
+from pipelines import examples
 from pipelines.evaluate import commands
-
-if TYPE_CHECKING:
-    from pipelines.build import Report
-    from pipelines.voice import Voice
+from pipelines.voice import Voice, summed
 
 FAILED: Final = 1
 TOO_MANY_REJECTIONS: Final = 3
-MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
 app = typer.Typer(
@@ -66,16 +63,7 @@ def unwritable(folder: str | Path, problem: OSError) -> typer.Exit:
     return fail(f"{folder}: {why}; name a folder that can be written to")
 
 
-EXPLAIN_EXAMPLES = """
-Examples:
-
-  nostalgin explain photo.jpg -o out         [dim]# pictures and explain.json in out/[/]
-
-  nostalgin explain photo.jpg -o out --no-placard
-"""
-
-
-@app.command("explain", epilog=EXPLAIN_EXAMPLES)
+@app.command("explain", epilog=examples.EXPLAIN)
 def explain_command(
     photo: Annotated[Path, typer.Argument(help="The photograph.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write to.")],
@@ -128,18 +116,7 @@ def explain_command(
     typer.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
 
 
-INDEX_EXAMPLES = """
-Examples:
-
-  nostalgin index photos --catalogue list.csv -o city
-
-  nostalgin index photos -o city                      [dim]# file names tell the lots[/]
-
-  nostalgin index photos --catalogue list.csv -o city --block 993
-"""
-
-
-@app.command("index", epilog=INDEX_EXAMPLES)
+@app.command("index", epilog=examples.INDEX)
 def index_command(
     photos: Annotated[Path, typer.Argument(help="The folder that holds the photos.")],
     city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
@@ -160,7 +137,7 @@ def index_command(
     """
     from pipelines.index import Nothing, index
 
-    voice = told(json_lines)
+    voice = Voice(errors, machine=json_lines)
     try:
         made = index(photos, catalogue, city, blocks=block or (), credit=credit)
     except Nothing as problem:
@@ -184,22 +161,9 @@ def index_command(
     )
 
 
-BUILD_EXAMPLES = """
-Examples:
-
-  nostalgin build city                            [dim]# in this process[/]
-
-  nostalgin build city --direct_num_workers 2     [dim]# two processes[/]
-
-  nostalgin build city --shard 3/16               [dim]# every sixteenth block[/]
-
-  nostalgin build city --runner FlinkRunner --flink_master host:8081
-"""
-
-
 @app.command(
     "build",
-    epilog=BUILD_EXAMPLES,
+    epilog=examples.BUILD,
     context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
 )
 def build_command(
@@ -230,7 +194,7 @@ def build_command(
     from pipelines.options import options
     from pipelines.site import ViewerMissingError
 
-    voice = told(json_lines)
+    voice = Voice(errors, machine=json_lines)
     try:
         chosen = options(city, models=str(models or ""), shard=shard, beam=context.args)
     except ValueError as problem:
@@ -240,19 +204,12 @@ def build_command(
             report = build(chosen, voice)
     except (Unusable, Unlocked, Lost, ViewerMissingError) as problem:
         raise fail(str(problem)) from problem
-    summed(report, voice, max_rejected)
+    summed(report, voice)
+    if report.rejected_share > max_rejected:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
-VIEW_EXAMPLES = """
-Examples:
-
-  nostalgin view city
-
-  nostalgin view city --port 8000 --no-browser
-"""
-
-
-@app.command("view", epilog=VIEW_EXAMPLES)
+@app.command("view", epilog=examples.VIEW)
 def view_command(
     city: Annotated[Path, typer.Argument(help="The city folder, or its site.")],
     *,
@@ -270,18 +227,9 @@ def view_command(
         raise fail(f"port {port}: {problem.strerror}; take another") from problem
 
 
-DEMO_EXAMPLES = """
-Examples:
-
-  nostalgin demo                                  [dim]# two blocks in demo-city/[/]
-
-  nostalgin demo --blocks 1 --direct_num_workers 2
-"""
-
-
 @app.command(
     "demo",
-    epilog=DEMO_EXAMPLES,
+    epilog=examples.DEMO,
     context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
 )
 def demo_command(
@@ -310,7 +258,7 @@ def demo_command(
     from pipelines.options import options
     from pipelines.view import view
 
-    voice = told(json_lines)
+    voice = Voice(errors, machine=json_lines)
 
     def tell(done: int, whole: int) -> None:
         if done % 10 == 0 or done == whole:
@@ -323,47 +271,13 @@ def demo_command(
     chosen = options(str(folder), beam=context.args or workers)
     with hushed(errors):
         report = build(chosen, voice)
-    summed(report, voice, max_rejected=1.0)
+    summed(report, voice)
     site = folder / "site"
     voice.say(
         "site", f"the site lies in {site}: nostalgin view {folder}", site=str(site)
     )
     if browser and sys.stdout.isatty():
         view(folder)
-
-
-def told(json_lines: bool) -> "Voice":  # noqa: FBT001 - as the option gives it
-    """Choose how to speak: to people on standard error, or JSON on standard output."""
-    from pipelines.voice import Voice
-
-    return Voice(errors, machine=json_lines)
-
-
-def summed(report: "Report", voice: "Voice", max_rejected: float) -> None:
-    """Tell what came of a build, and end with 3 if too much was rejected."""
-    shown = report.rejections if voice.machine else report.grave()[:MOST_LINES]
-    for one in shown:
-        words = f"{one['key']}: {one['stage']}: {one['reason']}: {one['detail']}"
-        voice.say("rejected", f"rejected {words}", **one)
-    for reason, count in () if voice.machine else report.reasons():
-        voice.say("reason", f"{count} times rejected by {reason}")
-    voice.say(
-        "done",
-        f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
-        f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
-        f"{report.buildings} buildings, {report.assumed} of them assumed; all "
-        f"rejections are in runs/{report.run}/rejections.parquet",
-        run=report.run,
-        photos=report.photos,
-        rejected_photos=report.rejected_photos,
-        facades=report.facades,
-        blocks=report.blocks,
-        buildings=report.buildings,
-        assumed=report.assumed,
-        reasons=dict(report.reasons()),
-    )
-    if report.rejected_share > max_rejected:
-        raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
 def main() -> None:

@@ -2,9 +2,14 @@
 
 import json
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
+
+if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
+    from pipelines.build import Report
+
+MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
 
 
 @dataclass
@@ -20,3 +25,28 @@ class Voice:
             print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
         else:
             self.console.print(text, markup=False, highlight=False)
+
+
+def summed(report: "Report", voice: Voice) -> None:
+    """Tell what came of a build."""
+    shown = report.rejections if voice.machine else report.grave()[:MOST_LINES]
+    for one in shown:
+        words = f"{one['key']}: {one['stage']}: {one['reason']}: {one['detail']}"
+        voice.say("rejected", f"rejected {words}", **one)
+    for reason, count in () if voice.machine else report.reasons():
+        voice.say("reason", f"{count} times rejected by {reason}")
+    voice.say(
+        "done",
+        f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
+        f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
+        f"{report.buildings} buildings, {report.assumed} of them assumed; all "
+        f"rejections are in runs/{report.run}/rejections.parquet",
+        run=report.run,
+        photos=report.photos,
+        rejected_photos=report.rejected_photos,
+        facades=report.facades,
+        blocks=report.blocks,
+        buildings=report.buildings,
+        assumed=report.assumed,
+        reasons=dict(report.reasons()),
+    )
