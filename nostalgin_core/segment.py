@@ -80,9 +80,18 @@ def trusted(
     facade_score: float = 0.4,
     occluder_score: float = 0.25,
 ) -> tuple[Instance, ...] | Rejection:
-    """Keep what scores enough for its kind; a photo without a front is refused."""
+    """Keep what scores enough for its kind; a photo without a front is refused.
+
+    A tax photo has one number board, so of the placards only the surest is kept.
+    """
     least = {"facade": facade_score}
-    kept = tuple(f for f in found if f.score >= least.get(f.category, occluder_score))
+    board = max((f.score for f in found if f.category == "placard"), default=0.0)
+    kept = tuple(
+        one
+        for one in found
+        if one.score >= least.get(one.category, occluder_score)
+        and (one.category != "placard" or one.score == board)
+    )
     if any(one.category == "facade" for one in kept):
         return kept
     return Rejection(

@@ -21,8 +21,8 @@ from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 1,
-    "matte": 2,
+    "segment": 2,
+    "matte": 3,
     "rectify": 1,
     "inpaint": 1,
     "block": 1,

@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -6,7 +7,8 @@ import numpy as np
 import pytest
 
 import nostalgin_core
-from nostalgin_core import session
+from nostalgin_core import facade, photo, session
+from nostalgin_core.measure_segmentation import overlap
 from nostalgin_core.records import Box, Photo, Rejection
 from nostalgin_core.segment import CATEGORIES, Network, laid_over, prepared, segment
 from tests.data import DATA, needs_data
@@ -63,6 +65,20 @@ def test_things_come_surest_first_and_unsure_ones_are_dropped() -> None:
     ]
 
 
+def test_of_several_placards_only_the_surest_is_kept() -> None:
+    half = (0.0, 0.0, 0.5, 0.5)
+    board = CATEGORIES.index("placard") + 1
+    network = _answering(
+        (half, FACADE, 0.5), (half, board, 0.6), (half, board, 0.9), (half, PERSON, 0.3)
+    )
+    found = segment(_photo(), network)
+    assert [(f.category, round(f.score, 3)) for f in found] == [
+        ("placard", 0.9),
+        ("facade", 0.5),
+        ("person", 0.3),
+    ]
+
+
 def test_a_photo_without_front_is_rejected_with_its_remedy() -> None:
     for things in ([], [((0.0, 0.0, 0.5, 0.5), PERSON, 0.9)]):
         answer = segment(_photo(), _answering(*things))
@@ -82,8 +98,9 @@ def test_the_network_sees_multiples_of_its_stride_at_its_scale(
     assert min(gray.shape) == 640 or max(gray.shape) == 1344
 
 
-def test_a_mask_is_stretched_as_opencv_stretches_it() -> None:
-    mask = np.random.default_rng(3).random((28, 28)).astype(np.float32)
+@pytest.mark.parametrize("texels", [28, 33, 46])
+def test_a_mask_is_stretched_as_opencv_stretches_it(texels: int) -> None:
+    mask = np.random.default_rng(3).random((texels, texels)).astype(np.float32)
     box, probability = laid_over(mask, np.array([10.0, 20.0, 150.0, 110.0]), (200, 200))
     assert box == Box(10, 20, 150, 110)
     want = cv2.resize(mask, (140, 90), interpolation=cv2.INTER_LINEAR)
@@ -103,14 +120,61 @@ def test_a_box_without_pixels_places_nothing() -> None:
     assert laid_over(mask, np.array([310.0, 0.0, 330.0, 20.0]), (300, 300)) is None
 
 
-@needs_data
-def test_the_shipped_network_finds_the_building_a_board_stands_before() -> None:
+@pytest.fixture(scope="module")
+def shipped() -> Network:
     models = Path(nostalgin_core.__file__).parent / "models"
     sums = json.loads((models / "models.lock").read_text())
-    network = session.load((models / "segment.onnx").read_bytes(), sums["segment.onnx"])
+    return session.load((models / "segment.onnx").read_bytes(), sums["segment.onnx"])
+
+
+def _taxphoto(name: str) -> Photo:
+    path = next((DATA / "taxphotos" / "photos").glob(f"*{name}.jpg"))
+    decoded = photo.decode(path.read_bytes(), name=name)
+    assert isinstance(decoded, Photo)
+    return decoded
+
+
+@needs_data
+@pytest.mark.parametrize("level", [1, 254])
+def test_a_hole_punched_through_a_front_is_no_front(
+    shipped: Network, level: int
+) -> None:
+    whole = _taxphoto("00993_0043")
+    centre, radius = (280, 480), 50  # on the target front, as wide as real punches
+    disc = cv2.circle(np.zeros(whole.image.shape, np.uint8), centre, radius, 1, -1) > 0
+    punched = replace(whole, image=np.where(disc, level, whole.image).astype(np.uint8))
+    before, after = (segment(one, shipped) for one in (whole, punched))
+    assert isinstance(before, tuple)
+    assert isinstance(after, tuple)
+    assert facade.covered_by(before, disc.shape)[disc].mean() < 0.1
+    assert facade.covered_by(after, disc.shape)[disc].mean() > 0.8
+
+
+@needs_data
+def test_a_watermark_does_not_hide_the_target(shipped: Network) -> None:
+    plain = _taxphoto("00993_0043")
+    letters = np.zeros(plain.image.shape, np.uint8)
+    for y in range(80, letters.shape[0], 170):
+        place, font = (10, y), cv2.FONT_HERSHEY_SIMPLEX
+        cv2.putText(letters, "MUNICIPAL ARCHIVES", place, font, 1.6, 1, 3)
+    marked = np.clip(plain.image + 20.0 * letters, 0, 255).astype(np.uint8)
+    targets = []
+    for one in (plain, replace(plain, image=marked)):
+        found = segment(one, shipped)
+        assert isinstance(found, tuple)
+        arranged = facade.arrange(one, found)
+        assert isinstance(arranged, tuple)
+        targets.append(np.any([f.mask for f in arranged if f.target], axis=0))
+    assert overlap(*targets) > 0.5  # it does move them: docs/segmentation.md
+
+
+@needs_data
+def test_the_shipped_network_finds_the_building_a_board_stands_before(
+    shipped: Network,
+) -> None:
     path = next((DATA / "taxphotos" / "photos").glob("*00993_0104.jpg"))
     image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
-    found = segment(Photo("993-104", image, Box(0, 0, 560, 840)), network)
+    found = segment(Photo("993-104", image, Box(0, 0, 560, 840)), shipped)
     categories = {f.category for f in found}
     assert {"facade", "vehicle", "placard"} <= categories
     # By the labels the target front's middle is at (297, 454).
