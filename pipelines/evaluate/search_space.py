@@ -4,7 +4,7 @@ Photographs are resized to 2048 px on the short side. Candidates are the interse
 of all pairs of the longest strict lines; they are voted on by all loose lines, without
 deduplication, with either kind, and with both. Reported: by how much candidates and
 time shrink, in percent, mean and standard deviation over photographs, and by how much
-the winner moves, as voted and after it is refined on the lines that vote for it. The
+the winner moves, as voted and once the best few are refined (`sphere`). The
 paper gives wall time; here it is CPU time, which other work on the machine can't bend.
 """
 
@@ -16,8 +16,8 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import camera, lines, vanish
-from nostalgin_core.arrays import Gray, Lines
+from nostalgin_core import camera, lines, sphere, vanish
+from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Box
 from pipelines.evaluate import Unmeasurable
 
@@ -25,7 +25,6 @@ SHORT_SIDE_PX = 2048
 LONGEST = 150  # strict lines; pairs grow with the square
 FAR = 20.0  # focal lengths: beyond, a point counts as infinite
 MOST = 12  # photographs
-ROUNDS = 4  # of refinement; the inliers settle in two or three
 KINDS: Final = {
     "collinear lines": (True, False),
     "infinite points": (False, True),
@@ -48,24 +47,6 @@ def without_infinite_doubles(
     return np.vstack([points[~infinite], vanish.without_doubles(points[infinite])])
 
 
-def refined(
-    point: Float[np.ndarray, "3"], loose: Lines, weights: Float[np.ndarray, " n"]
-) -> Float[np.ndarray, "3"]:
-    """Refine a vanishing point on the Gaussian sphere.
-
-    It is the unit vector that is least off a right angle to the planes through the
-    camera and the lines within t_a: the least eigenvector of the sum of w n n'.
-    """
-    one = np.ones((len(loose), 1))
-    planes = np.cross(np.hstack([loose[:, :2], one]), np.hstack([loose[:, 2:], one]))
-    planes = planes / np.linalg.norm(planes, axis=1, keepdims=True)
-    for _ in range(ROUNDS):
-        near = vanish.distance_deg(point[None], loose)[0] < vanish.ALIGNED_DEG
-        n = planes[near]
-        point = np.linalg.eigh((n * weights[near, None]).T @ n)[1][:, 0]
-    return point
-
-
 def reductions(image: Gray) -> dict[str, tuple[float, float, float, float]]:
     """Measure each kind of deduplication on one photograph.
 
@@ -80,7 +61,9 @@ def reductions(image: Gray) -> dict[str, tuple[float, float, float, float]]:
     loose = vanish.to_unit(loose_px, *where)
     weights = vanish.lengths(loose_px)
 
-    def search(*, collinear: bool, infinite: bool) -> tuple[int, float, np.ndarray]:
+    def search(
+        *, collinear: bool, infinite: bool
+    ) -> tuple[int, float, np.ndarray, np.ndarray]:
         start = time.process_time()
         used = vanish.without_collinear(strict) if collinear else strict
         points = vanish.intersections(used)
@@ -91,18 +74,19 @@ def reductions(image: Gray) -> dict[str, tuple[float, float, float, float]]:
                 for part in np.array_split(points, max(1, len(points) // 500))
             ]
         )
-        return len(points), time.process_time() - start, points[votes.argmax()]
+        seconds = time.process_time() - start
+        settled = sphere.best(points, votes, loose, weights)
+        return len(points), seconds, points[votes.argmax()], settled
 
-    count, seconds, winner = search(collinear=False, infinite=False)
-    settled = refined(winner, loose, weights)
+    count, seconds, winner, settled = search(collinear=False, infinite=False)
     result = {}
     for name, (collinear, infinite) in KINDS.items():
-        fewer, faster, moved = search(collinear=collinear, infinite=infinite)
+        fewer, faster, *moved = search(collinear=collinear, infinite=infinite)
         result[name] = (
             100 * (1 - fewer / count),
             100 * (1 - faster / seconds),
-            apart_deg(winner, moved),
-            apart_deg(settled, refined(moved, loose, weights)),
+            apart_deg(winner, moved[0]),
+            apart_deg(settled, moved[1]),
         )
     return result
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from nostalgin_core import camera, lines, manhattan
+from nostalgin_core import camera, lines, manhattan, sphere
 from nostalgin_core.records import Box, Photo, Rejection
 from pipelines import cli
 from pipelines.evaluate import (
@@ -175,7 +175,7 @@ def test_refining_finds_where_lines_meet_and_keeps_it() -> None:
     end = start + 0.2 * (true[:2] / true[2] - start)
     near = true + np.array([0.0, 0.01, 0.0])
     drawn = np.hstack([start, end])
-    found = search_space.refined(near / np.linalg.norm(near), drawn, np.ones(40))
+    found = sphere.refined(near / np.linalg.norm(near), drawn, np.ones(40))
     assert search_space.apart_deg(found, true) < 1e-6
 
 
