@@ -16,8 +16,7 @@ from nostalgin_core.records import Box
 
 FOCAL_PER_DIAGONAL = 0.85  # of the image: a compact camera's or a standard lens
 FOCALS = (0.6, 0.77, 1.0, 1.3)  # over the prior's, tried for the second horizontal
-TRIED = 6  # first horizontals
-REFINED = 3  # of the starts
+TRIED = 6  # first horizontals; each start is refined before any is judged
 FOCAL_SD = 0.35  # of its logarithm: any lens, not only the tax photographers'
 
 
@@ -39,8 +38,8 @@ def find(
     """Find three orthogonal vanishing points, or None where there are too few lines.
 
     For each of the best first horizontals and each of a few focal lengths, the second
-    is where a right angle puts it. The best starts are refined, and the one with most
-    votes in the end wins.
+    is where a right angle puts it. Every start is refined, and the one with most votes
+    in the end wins.
     """
     frame = frame or Box(0, 0, image.shape[1], image.shape[0])
     strict_px, loose_px = detect(image, lines.STRICT, lines.LOOSE)
@@ -90,8 +89,7 @@ def _starts(
             trial[0] = np.log(focal)
             trials.append(trial)
         starts.append(max(trials, key=lambda t: _votes(t, loose, weights)))
-    starts.sort(key=lambda t: -_votes(t, loose, weights))
-    return starts[:REFINED]
+    return starts
 
 
 def _votes(
