@@ -1,10 +1,13 @@
+import io
 import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
+from nostalgin_core import atlas, evidence, picture
 from nostalgin_core.records import Assignment, Block, Building, Front, Seen, Wall
 from pipelines import site, site_record
 
@@ -76,6 +79,18 @@ def test_the_tileset_is_swapped_in_last(
     )
     assembled(tmp_path / "site", viewer, model())
     assert order[-1] == "tileset.json"
+
+
+def test_the_site_tells_the_colours_that_its_models_evidence_is_painted_in(
+    tmp_path: Path, viewer: Path
+) -> None:
+    legend = assembled(tmp_path / "site", viewer, model())["legend"]
+    codes = np.array(sorted(evidence.NAMES), np.uint8)[None]
+    page = atlas.Atlas(codes, codes, codes, {}, ())
+    painted = Image.open(io.BytesIO(picture.evidence_key(page).data)).convert("RGB")
+    tints = [legend[str(code)]["tint"] for code in codes[0]]
+    assert np.asarray(painted)[0].tolist() == tints
+    assert len({tuple(tint) for tint in tints}) == len(legend) == codes.size
 
 
 def test_a_new_model_takes_the_place_of_the_old(tmp_path: Path, viewer: Path) -> None:

@@ -7,8 +7,9 @@ import { TilesRenderer } from '3d-tiles-renderer';
 import { GLTFExtensionsPlugin } from '3d-tiles-renderer/plugins';
 import { MeshBVH } from 'three-mesh-bvh';
 
+import { keysOf } from './evidence.js';
 import { united } from './model.js';
-import { EvidenceVariant, surface } from './paint.js';
+import { EvidenceVariant, surface, unlock } from './paint.js';
 import { survey } from './survey.js';
 
 const Y_UP_FROM_Z_UP = new Matrix4().makeRotationX(-Math.PI / 2);
@@ -19,6 +20,8 @@ export class City {
   constructor(record, tiles) {
     this.record = record;
     this.tiles = tiles;
+    this.keys = keysOf(record.legend); // colours of the evidence images' codes
+    unlock(this.keys);
     this.group = new Group();
     this.group.add(tiles.group);
     this.frames = new Map(); // block name -> Matrix4, city_from_block (y up)
@@ -103,7 +106,7 @@ export class City {
     place(scene, this.tiles.group.matrixWorld);
     const block = this.record.blocks.find((one) => tile.content.uri.endsWith(one.uri));
     const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
-    const mesh = united(scene, assumed);
+    const mesh = united(scene, assumed, this.keys);
     if (!mesh) return;
     place(scene, this.tiles.group.matrixWorld);
     mesh.geometry.boundsTree = new MeshBVH(mesh.geometry);

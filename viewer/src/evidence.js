@@ -13,25 +13,32 @@ export const KINDS = [
   { code: 6, name: 'Assumed: no photograph', color: '#b48bd0' },
 ];
 
-// The colours that stand for codes 0 to 6 in the model's own evidence image: those of
-// nostalgin_core/picture.py.
-const KEYS = [
-  [0, 0, 0], [255, 255, 255], [255, 244, 190], [255, 150, 70], [235, 90, 120], [90, 170, 255], [170, 140, 230],
-];
+/**
+ * The colours (0 to 255) that stand for codes 0, 1, 2 ... in the models' own evidence
+ * images, as the legend in site.json tells them.
+ */
+export function keysOf(legend) {
+  const codes = Object.keys(legend ?? {}).map(Number).sort((a, b) => a - b);
+  const whole = codes.length > ASSUMED && codes.every((code, place) => code === place);
+  const keys = codes.map((code) => legend[code].tint);
+  if (!whole || keys.some((key) => !isColour(key))) {
+    throw new Error('its legend tells no colour for some code; build the city again');
+  }
+  return keys;
+}
 
-/** The image's colours, each from 0 to 1. */
-export const keys = () => KEYS.map((row) => row.map((value) => value / 255));
+const isColour = (key) => Array.isArray(key) && key.length === 3 && key.every(Number.isFinite);
 
-/** The code that a colour of the image (0 to 255) stands for: the nearest one's. */
-export function codeOf(red, green, blue) {
-  const far = KEYS.map(([r, g, b]) => (r - red) ** 2 + (g - green) ** 2 + (b - blue) ** 2);
+/** The code that a colour of the image (0 to 255) stands for: the nearest key's. */
+export function codeOf(keys, red, green, blue) {
+  const far = keys.map(([r, g, b]) => (r - red) ** 2 + (g - green) ** 2 + (b - blue) ** 2);
   return far.indexOf(Math.min(...far));
 }
 
 /** Red, green, blue and strength for codes 0 to 7, each from 0 to 1. */
 export function palette() {
   const rows = Array.from({ length: 8 }, () => [0, 0, 0, 0]);
-    for (const { code, color, strength = 1 } of KINDS) if (color) rows[code] = [...rgb(color), strength];
+  for (const { code, color, strength = 1 } of KINDS) if (color) rows[code] = [...rgb(color), strength];
   rows[NOTHING] = rows[ASSUMED];
   return rows;
 }

@@ -10,10 +10,10 @@ const SAMPLE_PX = 1024; // the evidence atlas is read at no more than this
 /**
  * Replaces all meshes of a loaded model by one, and returns it; null where there is none.
  *
- * Its `userData` holds `ids` (building id by feature number), `evidence` (the texture) and
+ * `keys` are the colours of the evidence's codes. Its `userData` holds `ids` (building id by feature number), `evidence` (the texture) and
  * `codeAt(u, v)`; each vertex says as `assumed` whether its whole building is.
  */
-export function united(scene, assumed) {
+export function united(scene, assumed, keys) {
   const parts = [];
   scene.traverse((mesh) => mesh.isMesh && mesh.geometry.attributes._feature_id_0 && parts.push(mesh));
   if (!parts.length) return null;
@@ -29,7 +29,7 @@ export function united(scene, assumed) {
   });
   const mesh = new Mesh(mergeGeometries(geometries), first.material);
   const { evidence } = first.userData;
-  mesh.userData = { ids, evidence, codeAt: evidence ? reader(evidence.image) : () => 6 };
+  mesh.userData = { ids, evidence, codeAt: evidence ? reader(evidence.image, keys) : () => 6 };
   for (const part of parts) part.removeFromParent();
   scene.add(mesh);
   return mesh;
@@ -52,7 +52,7 @@ function idsOf(mesh, parts) {
 }
 
 /** A function that tells the evidence code at a texture coordinate. */
-function reader(image) {
+function reader(image, keys) {
   const scale = Math.min(1, SAMPLE_PX / Math.max(image.width, image.height));
   const [width, height] = [image.width, image.height].map((size) => Math.max(1, Math.round(size * scale)));
   const canvas = new OffscreenCanvas(width, height);
@@ -64,6 +64,6 @@ function reader(image) {
     const x = Math.min(width - 1, Math.max(0, Math.floor(u * width)));
     const y = Math.min(height - 1, Math.max(0, Math.floor(v * height)));
     const at = 4 * (y * width + x);
-    return data[at + 3] < 128 ? 0 : codeOf(data[at], data[at + 1], data[at + 2]);
+    return data[at + 3] < 128 ? 0 : codeOf(keys, data[at], data[at + 1], data[at + 2]);
   };
 }

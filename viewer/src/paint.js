@@ -3,15 +3,20 @@
 
 import { MeshBasicMaterial, NearestFilter, NoColorSpace, Vector3, Vector4 } from 'three';
 
-import { keys, palette } from './evidence.js';
+import { palette } from './evidence.js';
 
 /** Shared by all materials: one switch for the whole city. */
 export const shown = {
   evidence: { value: 0 },
-  keys: { value: keys().map((row) => new Vector3(...row)) },
+  keys: { value: [] }, // see `unlock`
   palette: { value: palette().map((row) => new Vector4(...row)) },
   sun: { value: new Vector3(-0.45, 0.75, 0.5).normalize() },
 };
+
+/** Gives all materials the colours (0 to 255) of the evidence images' codes. */
+export function unlock(keys) {
+  shown.keys.value = keys.map((key) => new Vector3(...key).divideScalar(255));
+}
 
 /**
  * A loader extension: finds the material of the variant `evidence` (KHR_materials_variants)
@@ -48,7 +53,7 @@ export class EvidenceVariant {
 export function surface({ material: { map, color, alphaTest }, userData: { evidence = null } }) {
   const material = new MeshBasicMaterial({ map, color, alphaTest });
   if (map) map.anisotropy = 8;
-  material.defines = evidence ? { EVIDENCE: 1 } : {};
+  material.defines = evidence ? { EVIDENCE: 1, KEYS: shown.keys.value.length } : {};
   const uniforms = { ...shown, evidenceMap: { value: evidence } };
   material.onBeforeCompile = (shader) => patch(shader, uniforms);
   material.customProgramCacheKey = () => `city${Boolean(map)}${Boolean(evidence)}`;
@@ -80,14 +85,14 @@ cityAssumed = assumed;
 const DECLARATIONS = `
 uniform float evidence;
 uniform vec4 palette[8];
-uniform vec3 keys[7];
 uniform vec3 sun;
 #ifdef EVIDENCE
+uniform vec3 keys[KEYS];
 uniform sampler2D evidenceMap;
 int codeOf(vec3 key) {
   int best = 6;
   float least = 9.0;
-  for (int i = 0; i < 7; i++) {
+  for (int i = 0; i < KEYS; i++) {
     vec3 off = key - keys[i];
     float far = dot(off, off);
     if (far < least) { least = far; best = i; }

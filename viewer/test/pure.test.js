@@ -1,11 +1,16 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { KINDS, codeOf, keys, nameOfCode, palette } from '../src/evidence.js';
+import { KINDS, codeOf, keysOf, nameOfCode, palette } from '../src/evidence.js';
 import { contains, hull, signedArea2, widened } from '../src/outline.js';
 import { fromHash, toHash } from '../src/pose.js';
 import { feet, metres, percent } from '../src/words.js';
 
+// as site.json tells them; any colours that lie apart will do
+const LEGEND = Object.fromEntries(
+  [[0, 0, 0], [255, 255, 255], [255, 240, 180], [255, 140, 60], [230, 90, 120], [90, 170, 250], [170, 140, 230]]
+    .map((tint, code) => [code, { name: `code ${code}`, tint }]),
+);
 const SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]];
 
 test('a pose survives the address bar', () => {
@@ -60,11 +65,24 @@ test('only what a camera saw stays untinted', () => {
 });
 
 test('every colour of the evidence image leads back to its code, also when it is off a little', () => {
-  keys().forEach((key, code) => {
-    const [red, green, blue] = key.map((value) => Math.round(value * 255));
-    assert.equal(codeOf(red, green, blue), code);
-    assert.equal(codeOf(red, Math.max(0, green - 3), Math.min(255, blue + 3)), code);
+  const keys = keysOf(LEGEND);
+  keys.forEach(([red, green, blue], code) => {
+    assert.equal(codeOf(keys, red, green, blue), code);
+    assert.equal(codeOf(keys, red, Math.max(0, green - 3), Math.min(255, blue + 3)), code);
   });
+});
+
+test('other colours in the legend are other keys', () => {
+  const swapped = keysOf({ ...LEGEND, 3: LEGEND[5], 5: LEGEND[3] });
+  assert.equal(codeOf(swapped, ...LEGEND[3].tint), 5);
+  assert.equal(codeOf(swapped, ...LEGEND[5].tint), 3);
+});
+
+test('a legend that leaves a code without a colour is refused', () => {
+  const { 4: _, ...lacking } = LEGEND;
+  for (const legend of [undefined, {}, lacking, { ...LEGEND, 2: { name: 'soft' } }, { ...LEGEND, 2: { tint: [1, 2] } }]) {
+    assert.throws(() => keysOf(legend), /legend/);
+  }
 });
 
 test('a surface that nothing is known of is called assumed', () => {
