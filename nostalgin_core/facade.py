@@ -124,8 +124,10 @@ def _apart(
     enough = smallest * (x1 - x0) * (y1 - y0)
     fronts = []
     for i, facade in enumerate(facades):
-        mask = _solid(owner == i, owner < 0) & ~hidden
-        if mask.sum() >= enough:
+        x0, y0, x1, y1 = facade.box
+        mask, here = np.zeros(shape, bool), np.s_[y0:y1, x0:x1]
+        mask[here] = _solid(owner[here] == i, owner[here] < 0) & ~hidden[here]
+        if np.count_nonzero(mask) >= enough:
             fronts.append(_Front(facade.score, mask))
     return fronts
 
@@ -163,7 +165,7 @@ def _solid(mask: Mask, free: Mask) -> Mask:
         return mask
     areas = stats[:, cv2.CC_STAT_AREA]
     areas[0] = 0
-    large = np.isin(labels, np.flatnonzero(areas >= CRUMB * areas.max()))
+    large = (areas >= CRUMB * areas.max())[labels]
     pieces_left = large.astype(np.uint8)
     outlines, _ = cv2.findContours(
         pieces_left, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE

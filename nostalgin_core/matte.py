@@ -186,15 +186,16 @@ def _nearest(
     A single front has none beside it: its second is -1, infinitely far.
     """
     shape = wholes[0].shape
-    first, second = np.zeros(shape, np.intp), np.full(shape, -1)
+    first, second = np.full(shape, -1, np.int16), np.full(shape, -1, np.int16)
     deepest, deep = np.full(shape, -_FAR, np.float32), np.full(shape, -_FAR, np.float32)
     for i, whole in enumerate(wholes):
         depth = signed_distance(whole).clip(-_FAR / 2, _FAR / 2)
-        leads, follows = depth > deepest, depth > deep
-        second = np.where(leads, first if i else second, np.where(follows, i, second))
-        deep = np.where(leads, deepest, np.where(follows, depth, deep))
-        first = np.where(leads, i, first)
-        deepest = np.maximum(deepest, depth)
+        leads = depth > deepest
+        np.copyto(second, i, where=depth > deep)
+        np.copyto(second, first, where=leads)
+        np.copyto(first, i, where=leads)
+        np.maximum(deep, np.minimum(depth, deepest), out=deep)
+        np.maximum(deepest, depth, out=deepest)
     return first, second, (deepest - deep) / 2
 
 
