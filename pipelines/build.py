@@ -70,7 +70,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     for warning in found.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
     if found.mended:
-        manifest.write(store, [row.cells for row in found.rows])
+        manifest.write(store, [row.cells for row in found.rows], title=found.title)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORK.values():
         models.read(network)  # a spoiled file is told here, not by every photo
@@ -91,7 +91,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     note(store, run, options, began, result)
     report = reported(store, run, todo)
     if shard == (1, 1):
-        publish(store, run, bench.versions, found.rows)
+        publish(store, run, bench.versions, found.rows, title=found.title)
     return report
 
 

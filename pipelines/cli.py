@@ -128,6 +128,9 @@ def index_command(
         list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
     ] = None,
     credit: Annotated[str, typer.Option(help="Whom to name beside the photos.")] = "",
+    title: Annotated[
+        str, typer.Option(help="The city's name on its page; else its folder's.")
+    ] = "",
     json_lines: JsonLines = False,
 ) -> None:
     """Write a city folder's manifest: which photo shows which fronts, in what order.
@@ -139,7 +142,9 @@ def index_command(
 
     voice = Voice(errors, machine=json_lines)
     try:
-        made = index(photos, catalogue, city, blocks=block or (), credit=credit)
+        made = index(
+            photos, catalogue, city, blocks=block or (), credit=credit, title=title
+        )
     except Nothing as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
@@ -252,7 +257,7 @@ def demo_command(
     one_thread()
     logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
     from pipelines.build import build
-    from pipelines.demo import CREDIT, painted
+    from pipelines.demo import CREDIT, TITLE, painted
     from pipelines.hush import hushed
     from pipelines.index import index
     from pipelines.options import options
@@ -266,7 +271,7 @@ def demo_command(
             voice.say("painted", words, done=done, whole=whole)
 
     photos, listed = painted(folder, blocks=blocks, tell=tell)
-    index(photos, listed, str(folder), credit=CREDIT)
+    index(photos, listed, str(folder), credit=CREDIT, title=TITLE)
     workers = [f"--direct_num_workers={min(os.cpu_count() or 1, MOST_WORKERS)}"]
     chosen = options(str(folder), beam=context.args or workers)
     with hushed(errors):

@@ -19,6 +19,7 @@ from nostalgin_core.scenes import (
 
 SEED: Final = 1940
 CREDIT: Final = "Painted for this demonstration"
+TITLE: Final = "A painted neighbourhood"
 JPEG_QUALITY: Final = 92  # an archive's scans are compressed as well
 
 

@@ -18,6 +18,8 @@ Examples:
   nostalgin index photos -o city                      [dim]# file names tell the lots[/]
 
   nostalgin index photos --catalogue list.csv -o city --block 993
+
+  nostalgin index photos -o city --title "Midtown, 1940"
 """
 
 BUILD: Final = """

@@ -16,6 +16,7 @@ from nostalgin_core.entry import Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
 from pipelines import manifest
 from pipelines.store import Store
+from pipelines.title import cleaned
 
 SUFFIXES: Final = (
     ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
@@ -48,8 +49,9 @@ def index(
     *,
     blocks: Sequence[str] = (),
     credit: str = "",
+    title: str = "",
 ) -> Indexed:
-    """Write a city folder's manifest.
+    """Write a city folder's manifest; without a `title` its folder's name is shown.
 
     Without a catalogue the file names tell block and lot; where they don't, the photos
     of a folder stand in one row, in the order of their names.
@@ -76,7 +78,7 @@ def index(
         )
         for photo, front in rows
     ]
-    manifest.write(Store(city), cells)
+    manifest.write(Store(city), cells, title=cleaned(title))
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
         fronts=len(fronts),

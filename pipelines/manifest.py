@@ -2,8 +2,8 @@
 
 `index` writes it twice, as `manifest.parquet` for programs and `manifest.csv` for
 people. The Parquet file remembers the hash of the CSV it was written with, so a CSV
-that was mended by hand is noticed, and wins. Columns are documented in
-`docs/manifest.md`; columns that are not known are kept.
+that was mended by hand is noticed, and wins; it keeps the city's title, too. Columns
+are documented in `docs/manifest.md`; columns that are not known are kept.
 """
 
 import csv
@@ -23,6 +23,7 @@ from pipelines.store import Store, parquet_bytes
 PARQUET: Final = "manifest.parquet"
 CSV: Final = "manifest.csv"
 CSV_HASH: Final = b"nostalgin.csv_sha256"
+TITLE: Final = b"nostalgin.title"
 PHOTO: Final = pa.schema(
     [
         pa.field("root", pa.string()),  # folder that `photo` is relative to
@@ -69,6 +70,7 @@ class Manifest:
     warnings: tuple[str, ...]
     sha256: str  # of what was read
     mended: bool = False  # the CSV was edited since it was written
+    title: str = ""  # of the city; empty: its folder's name will do
 
 
 def row_of(
@@ -79,7 +81,7 @@ def row_of(
     return {"root": root, "photo": photo, "credit": credit} | cells
 
 
-def write(store: Store, rows: list[dict[str, Any]]) -> None:
+def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
     """Write the manifest in both forms, in the order of block, ring, rank and photo."""
     known = SCHEMA.names
     others = sorted({name for row in rows for name in row} - set(known))
@@ -88,6 +90,8 @@ def write(store: Store, rows: list[dict[str, Any]]) -> None:
     extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
     table = pa.Table.from_pylist(ordered, extended)
     mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
+    if title:
+        mark[TITLE] = title.encode()
     store.write_bytes(CSV, text)
     store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
 
@@ -125,15 +129,21 @@ def read(store: Store) -> Manifest:
         Unusable: if there is none, or if what there is makes no sense.
     """
     mended, parquet = optional(store, CSV), optional(store, PARQUET)
+    title = ""
     if parquet is not None:
         table = parsed(parquet, store.root)
-        mark = (table.schema.metadata or {}).get(CSV_HASH, b"").decode()
+        told = table.schema.metadata or {}
+        title = told.get(TITLE, b"").decode(errors="replace")
+        mark = told.get(CSV_HASH, b"").decode(errors="replace")
         if mended is None or hashlib.sha256(mended).hexdigest() == mark:
-            return checked(table.to_pylist(), table.column_names, parquet, PARQUET)
+            rows = table.to_pylist()
+            found = checked(rows, table.column_names, parquet, PARQUET)
+            return replace(found, title=title)
     if mended is None:
         raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    return replace(checked(rows, names, mended, CSV), mended=parquet is not None)
+    found = checked(rows, names, mended, CSV)
+    return replace(found, mended=parquet is not None, title=title)
 
 
 def optional(store: Store, name: str) -> bytes | None:

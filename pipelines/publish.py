@@ -13,17 +13,20 @@ from nostalgin_core import city
 from pipelines import runs, site
 from pipelines.manifest import Row, natural
 from pipelines.store import Store
+from pipelines.title import cleaned, of_folder
 from pipelines.versions import Versions
 
 CURRENT: Final = "CURRENT"
 SITE: Final = "site"
 
 
-def publish(store: Store, run: str, versions: Versions, rows: Sequence[Row]) -> None:
+def publish(
+    store: Store, run: str, versions: Versions, rows: Sequence[Row], *, title: str = ""
+) -> None:
     """Write the site, and only then point at the run.
 
-    A store elsewhere gets the pointer alone: `nostalgin build` on a machine that mounts
-    it writes the site.
+    Without a `title` the city is called after its folder. A store elsewhere gets the
+    pointer alone: `nostalgin build` on a machine that mounts it writes the site.
     """
     blocks = runs.read_table(store, run, "blocks")
     if blocks and "://" not in store.root:
@@ -32,7 +35,7 @@ def publish(store: Store, run: str, versions: Versions, rows: Sequence[Row]) -> 
             folder / SITE,
             blocks=models(store, run, blocks, rows),
             photos=Thumbnails(store, run, versions),
-            title=folder.resolve().name,
+            title=cleaned(title) or of_folder(folder.resolve().name),
         )
     store.write_bytes(CURRENT, f"{run}\n".encode())
 

@@ -16,7 +16,9 @@ from pipelines import manifest
 from pipelines.build import Report, build
 from pipelines.models import Models
 from pipelines.options import options
+from pipelines.publish import publish
 from pipelines.store import Store
+from pipelines.versions import versions
 from pipelines.voice import Voice
 from tests.pipelines import painted
 
@@ -126,6 +128,24 @@ def test_the_pipeline_equals_the_plain_loop(city: Path) -> None:
 def test_the_best_of_several_photos_is_worn_and_the_others_are_kept(city: Path) -> None:
     assert len(artifacts(city, "rectify")) == 4
     assert len(artifacts(city, "inpaint")) == 3
+
+
+@pytest.mark.parametrize(
+    ("title", "shown"),
+    [("Midtown,\n1940 <b>", "Midtown, 1940 <b>"), ("", "Main street"), ("\n", None)],
+)
+def test_the_site_shows_the_title_or_the_folder_s_name(
+    city: Path, tmp_path: Path, title: str, shown: str | None
+) -> None:
+    other = tmp_path / "main-street"
+    shutil.copytree(city, other)
+    store = Store(str(other))
+    models = Models(str(city.parent / "models"))
+    rows = manifest.read(store).rows
+    run = (other / "CURRENT").read_text().strip()
+    publish(store, run, versions(models), rows, title=title)
+    record = json.loads((other / "site" / "site.json").read_text())
+    assert record["title"] == (shown or "Main street")
 
 
 def test_clock_times_stand_in_one_file_alone(city: Path) -> None:

@@ -69,6 +69,14 @@ def test_indexing_twice_writes_the_same_bytes(photos: Path) -> None:
     assert {path.name: path.read_bytes() for path in city.iterdir()} == first
 
 
+@pytest.mark.parametrize("title", ["<b>x</b>\n\0", "x" * 10_000, "\udcff"])
+def test_a_hostile_title_becomes_one_short_line(photos: Path, title: str) -> None:
+    indexed(photos, CATALOGUE, title=title)
+    kept = manifest.read(Store(str(photos.parent / "city"))).title
+    assert len(kept) <= 100
+    assert kept == "" or kept.isprintable()
+
+
 def test_without_a_catalogue_file_names_tell_the_lots(photos: Path) -> None:
     made = indexed(photos, None)
     assert (made.photos, made.blocks) == (3, 2)

@@ -59,6 +59,18 @@ def test_a_mended_csv_wins(store: Store) -> None:
     assert manifest.read(store).rows[0].front.address == "561"  # type: ignore[union-attr]
 
 
+def test_the_title_is_kept_also_when_the_csv_is_mended(store: Store) -> None:
+    manifest.write(store, rows(), title="Midtown, 1940")
+    assert manifest.read(store).title == "Midtown, 1940"
+    edit(store, ("561-565", "561"))
+    found = manifest.read(store)
+    assert (found.mended, found.title) == (True, "Midtown, 1940")
+
+
+def test_a_manifest_without_a_title_has_none(store: Store) -> None:
+    assert manifest.read(store).title == ""
+
+
 def test_an_untouched_csv_is_not_read(store: Store) -> None:
     before = manifest.read(store)
     path = Path(store.root) / manifest.CSV
