@@ -21,7 +21,7 @@ from nostalgin_core.windows import windows
 
 DIRECT: Final = 20_000  # unknowns, solved at once in some tenths of a second
 STEPS: Final = 24  # half of them cost 6 % in squared error, twice as many save 2 %
-SETTLED: Final = 1e-3  # a quarter of a step of 8 bits
+SETTLED: Final = 4e-3  # a step of 8 bits
 
 _Light = Float32[np.ndarray, "h w"]
 

@@ -82,12 +82,13 @@ def matte(
     common = solve(*outline(built, likely, hidden, px=facade_px))
     seen = common * (1.0 - hidden)
     shares = _shares(solve, wholes, seen, facade_px[0])
+    hiding = _placed(hidden, cut, shape)
     return Matted(
         tuple(
             replace(front, alpha=_placed(seen * share, cut, shape))
             for front, share in zip(fronts, shares, strict=True)
         ),
-        tuple(_occluder(i, _placed(hidden, cut, shape), least) for i in hiders),
+        tuple(_occluder(i, hiding, least) for i in hiders),
     )
 
 
