@@ -8,7 +8,7 @@ are guesses, are never scored, nor given to the rectifier.
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -36,32 +36,6 @@ class Labelled:
     fronts: list[dict[str, Any]]
     results: tuple[Elevation | Rejection, ...]  # one a front
     seconds: float  # CPU
-
-
-Show = Callable[[str, list[Labelled]], object]
-
-
-def evaluate(
-    folder: Path,
-    detectors: dict[str, lines.Detector],
-    *,
-    block: str = "",
-    show: Show | None = None,
-) -> dict[str, Any]:
-    """Measure rectification on the labels of a folder that begin with `block`.
-
-    `show` is called with each detector's name and all that came of it.
-
-    Raises:
-        Unmeasurable: if there is no such folder, or it holds no labelled photo.
-    """
-    report = {}
-    for name, detector in detectors.items():
-        photographs = list(straightened(folder, block=block, detector=detector))
-        report[name] = summed(photographs)
-        if show is not None:
-            show(name, photographs)
-    return report
 
 
 def straightened(

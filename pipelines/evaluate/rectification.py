@@ -15,6 +15,7 @@ from nostalgin_core import lines
 from pipelines.evaluate import (
     Unmeasurable,
     detectors,
+    label_points,
     labelled,
     pictures,
     search_space,
@@ -80,9 +81,7 @@ def evaluate(
         report["york_urban"] = york_urban.evaluate(data / "york_urban", used)
     if "labels" in parts:
         report["labels"] = {
-            one.name: labelled.evaluate(
-                one, used, block=block, show=_shown(sheets, one.name)
-            )
+            one.name: labels(one, used, block=block, sheets=sheets)
             for one in holding(sets, block)
         }
     if "painted" in parts:
@@ -96,11 +95,25 @@ def evaluate(
     return report
 
 
-def _shown(sheets: Path | None, name: str) -> labelled.Show | None:
-    """Write one set's contact sheets, a folder a detector, if they are wanted."""
-    if sheets is None:
-        return None
-    return lambda finder, photographs: sheet.write(photographs, sheets / name / finder)
+def labels(
+    folder: Path,
+    used: dict[str, lines.Detector],
+    *,
+    block: str,
+    sheets: Path | None,
+) -> dict[str, Any]:
+    """Measure one set's labels with each detector, and draw its sheets if wanted."""
+    report = {}
+    for name, detector in used.items():
+        photographs = list(
+            labelled.straightened(folder, block=block, detector=detector)
+        )
+        report[name] = labelled.summed(photographs) | {
+            "coverage": label_points.coverage(photographs)
+        }
+        if sheets is not None:
+            sheet.write(photographs, sheets / folder.name / name)
+    return report
 
 
 def lines_drawn(

@@ -78,6 +78,7 @@ def labels(sets: Report) -> list[str]:
                 ]
                 lines.append(_row(f"{name}, {finder}, {kind}", cells))
             lines.append(_rejections(row["rejections"]))
+            lines += coverage(row["coverage"], "stated 95 % and labels' 2 px")
     return lines
 
 
@@ -98,10 +99,10 @@ def painted(finders: Report) -> list[str]:
     return lines[:-1]
 
 
-def coverage(table: Report) -> list[str]:
+def coverage(table: Report, title: str = "stated 95 % intervals") -> list[str]:
     """Write how often stated 95 % intervals hold the truth."""
     heads = ["n", "covered %", "Wilson 95 %", "width", "|error| / sd at 50 68 90 95 %"]
-    lines = [_row("stated 95 % intervals", heads)]
+    lines = [_row(title, heads)]
     for quantity, rows in table.items():
         for method, row in rows.items():
             cells = [

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from nostalgin_core import camera, lines, manhattan, sphere
+from nostalgin_core import camera, lines, manhattan, measure_rectification, sphere
 from nostalgin_core.records import Box, Photo, Rejection
 from pipelines import cli
 from pipelines.evaluate import (
     detectors,
+    label_points,
     labelled,
     peers,
     rectification_table,
@@ -40,6 +41,7 @@ def labelled_folder(folder: Path) -> Path:
             "quad": quad.tolist(),
             "target": i == 0,
             "group": False,
+            "complete": True,
         }
         for i, quad in enumerate(painted.quads)
     ]
@@ -72,7 +74,7 @@ def test_a_label_becomes_masks_without_occluders_and_groups() -> None:
 def test_true_labels_are_nearly_rectangles_and_groups_are_never_scored(
     tmp_path: Path,
 ) -> None:
-    row = labelled.evaluate(labelled_folder(tmp_path), {"ours": lines.detect})["ours"]
+    row = labelled.summed(list(labelled.straightened(labelled_folder(tmp_path))))
     assert (row["target_fronts"], row["all_fronts"]) == (1, 2)
     assert (row["target_straightened"], row["all_straightened"]) == (1, 2)
     assert 0 <= row["all_angle_median"] <= row["all_angle_p90"] < 0.7
@@ -88,8 +90,36 @@ def test_a_spoiled_label_errs_by_what_it_was_spoiled(tmp_path: Path) -> None:
     quad[1, 1] += width * np.tan(np.radians(8))
     label["objects"][0]["quad"] = quad.tolist()
     file.write_text(json.dumps(label))
-    row = labelled.evaluate(folder, {"ours": lines.detect})["ours"]
+    row = labelled.summed(list(labelled.straightened(folder)))
     assert 5 < row["target_angle_median"] < 12
+
+
+def test_true_labels_lie_within_what_is_stated(tmp_path: Path) -> None:
+    photographs = list(labelled.straightened(labelled_folder(tmp_path)))
+    residuals = label_points.compared(photographs[0])
+    assert [one.quantity for one in residuals] == ["horizontal", "vertical"] * 2
+    assert all(one.error < 1.96 * one.sd for one in residuals)
+    table = label_points.coverage(photographs)
+    assert table["vertical"]["all"]["count"] == 2
+    assert table["vertical"]["all"]["share"] == 1
+
+
+def test_a_labels_noise_moves_its_points_by_what_is_foretold() -> None:
+    quad = np.array([[150.0, 120.0], [420.0, 60.0], [430.0, 420.0], [140.0, 400.0]])
+    rng = np.random.default_rng(0)
+    per_axis = label_points.LABEL_SD_PX / np.sqrt(2)
+    for rank in range(2):
+        true = label_points.points(quad)[rank]
+        turns = [
+            measure_rectification.angle_deg(
+                label_points.points(quad + rng.normal(0, per_axis, (4, 2)))[rank],
+                true,
+                CAMERA,
+            )
+            for _ in range(800)
+        ]
+        foretold = label_points.label_sd_deg(quad, rank, CAMERA)
+        assert foretold == pytest.approx(np.sqrt(np.mean(np.square(turns))), rel=0.1)
 
 
 @pytest.mark.parametrize("detect", [detectors.lsd, detectors.hough])
