@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from nostalgin_core.arrays import Gray, Probability
+from nostalgin_core.flare import flares
 from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
 
 CATEGORIES: tuple[Category, ...] = get_args(Category)
@@ -82,7 +83,8 @@ def trusted(
 ) -> tuple[Instance, ...] | Rejection:
     """Keep what scores enough for its kind; a photo without a front is refused.
 
-    A tax photo has one number board, so of the placards only the surest is kept.
+    A tax photo has one number board, so of the placards only the surest is kept. Flares
+    on fronts are added: no network was taught them.
     """
     least = {"facade": facade_score}
     board = max((f.score for f in found if f.category == "placard"), default=0.0)
@@ -93,7 +95,7 @@ def trusted(
         and (one.category != "placard" or one.score == board)
     )
     if any(one.category == "facade" for one in kept):
-        return kept
+        return flares(photo, kept) + kept
     return Rejection(
         photo.key,
         "segment",

@@ -21,7 +21,7 @@ from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 2,
+    "segment": 3,
     "matte": 3,
     "rectify": 1,
     "inpaint": 1,
