@@ -24,7 +24,7 @@ CODE: Final = {
     "segment": 3,
     "matte": 3,
     "rectify": 1,
-    "inpaint": 1,
+    "inpaint": 2,
     "block": 1,
     "thumbnail": 1,
 }

@@ -1,8 +1,10 @@
+import cv2
 import numpy as np
 import pytest
 
 from nostalgin_core.records import Box
-from nostalgin_core.repetition import guess, offsets, shifted
+from nostalgin_core.repetition import agreements, guess, shifted
+from nostalgin_core.resemblance import resemblance
 from nostalgin_core.smooth import fill
 
 
@@ -16,8 +18,9 @@ def front(h: int, w: int, *, axis: int, floor: int) -> np.ndarray:
 @pytest.mark.parametrize(("axis", "floor"), [(20, 30), (27, 33), (31, 24)])
 def test_axes_and_floors_are_found_again(axis: int, floor: int) -> None:
     image = front(200, 180, axis=axis, floor=floor)
-    choices, rates = offsets(image, np.ones(image.shape, bool))
-    steps = np.abs(choices) / [axis, floor]
+    found, mirrored, rates = resemblance(image, np.ones(image.shape, bool), count=40)
+    steps = np.abs(found[~mirrored]) / [axis, floor]
+    assert len(steps) > 4
     assert (np.abs(steps - np.round(steps)) * [axis, floor]).max() < 1
     assert rates[0] > 0.9
 
@@ -90,3 +93,45 @@ def test_a_membrane_over_a_plane_is_the_plane() -> None:
     hole = np.zeros(image.shape, bool)
     hole[20:40, 20:44] = True
     assert np.abs(fill(image, hole) - image).max() < 3
+
+
+def portal(h: int, w: int) -> np.ndarray:
+    """Paint a front that is its own mirror image and repeats nowhere."""
+    rng = np.random.default_rng(3)
+    half = cv2.resize(rng.integers(0, 200, (h // 12, w // 24), np.uint8), (w // 2, h))
+    return np.hstack([half, half[:, ::-1]]).astype(np.float32)
+
+
+def test_a_mirror_shows_what_is_hidden_on_one_side() -> None:
+    image = portal(180, 168)
+    hole = np.zeros(image.shape, bool)
+    hole[60:120, 20:60] = True
+    off = [
+        np.abs(made - image)[hole].mean()
+        for made in (guess(image, hole), fill(image, hole))
+    ]
+    assert off[0] < 0.3 * off[1]
+
+
+def test_the_axis_of_a_symmetric_front_is_found_again() -> None:
+    image = portal(180, 168)[:, 10:]  # 158 columns about the axis between 73 and 74
+    found = resemblance(image, np.ones(image.shape, bool))
+    assert found.mirrored[0]
+    # Column x equals column 147 - x, which the mirror image shows at 157 - 147 + x.
+    assert np.abs(found.offsets[0] - [10, 0]).max() < 1
+    assert found.rates[0] > 0.9
+
+
+def test_judging_a_box_alone_judges_it_as_the_whole_front_would() -> None:
+    image = front(160, 150, axis=24, floor=32)
+    hole = np.zeros(image.shape, bool)
+    hole[100:160, 50:90] = True
+    image = np.where(hole, 0, image).astype(np.float32)
+    found = resemblance(image, ~hole)
+    found = found._replace(offsets=np.round(found.offsets).astype(int))
+    box, everything = Box(40, 90, 100, 160), Box(0, 0, 150, 160)
+    part = agreements(image, ~hole, found, box)
+    whole = agreements(image, ~hole, found, everything)
+    for few, many in zip(part, whole, strict=True):
+        for a, b in zip(few, many, strict=True):
+            assert np.allclose(a, b[90:160, 40:100], atol=1e-3)
