@@ -6,7 +6,10 @@ STREET_M = 18.3  # 60 feet from front to front: a side street of 1811
 AVENUE_M = 30.5  # 100 feet
 WIDE = frozenset({"avenue", "ave", "broadway", "boulevard", "bowery", "square"})
 
-NUMBERS = re.compile(r"\s*(\d+)\s*[A-Za-z]?(?:\s*(?:1/2|½))?(?:\s*[-/\u2013]\s*(\d+))?")
+NUMBER = r"(\d{1,9})(?!\d)"  # longer ones number no house
+NUMBERS = re.compile(
+    rf"\s*{NUMBER}\s*[A-Za-z]?(?:\s*(?:1/2|½))?(?:\s*[-/\u2013]\s*{NUMBER})?"
+)
 
 
 def house_numbers(address: str) -> tuple[int, int] | None:

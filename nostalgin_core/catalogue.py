@@ -9,10 +9,11 @@ names it as a spreadsheet counts, header first. What a row's cells say is told i
 """
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import Final
+from typing import Any, Final
 
 from nostalgin_core.entry import Entry, from_cells, from_file_name, round_the_corner
 from nostalgin_core.records import Rejection
@@ -69,8 +70,12 @@ class Catalogue:
 def read(
     rows: Iterable[Mapping[str, str | None]], *, name: str = "catalogue"
 ) -> Catalogue:
-    """Read the rows of a catalogue, each by itself."""
-    listed = [dict(row) for row in rows]
+    """Read the rows of a catalogue, each by itself.
+
+    What stands beyond the last column is found under None or no name, as `csv` has it.
+    """
+    given = [dict(row) for row in rows]
+    listed = [{key: cell for key, cell in row.items() if key} for row in given]
     columns = _columns(listed)
     warnings = [
         f"{name}: column {column!r} is not known; it is kept"
@@ -78,9 +83,10 @@ def read(
         if column not in columns.values() and _plain(column) not in UNUSED
     ]
     entries, rejections = [], []
-    for number, row in enumerate(listed, FIRST_ROW):
+    for number, (row, whole) in enumerate(zip(listed, given, strict=True), FIRST_ROW):
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
         try:
+            _check_width(whole)
             entry, doubts = from_cells(cells, number)
         except ValueError as problem:
             reason, _, detail = str(problem).partition(": ")
@@ -96,21 +102,30 @@ def read(
 def matched(
     entries: Sequence[Entry], photos: Sequence[str]
 ) -> tuple[dict[str, tuple[Entry, ...]], tuple[Rejection, ...]]:
-    """Find each photo's rows: by its path, its name, or its name without suffix.
+    """Find each photo's rows: those that name its path, or else just its name.
 
-    A photo that no row names is matched by the block and lot in its own name, if the
-    catalogue has that lot; else it is rejected.
+    Neither case nor suffix matters. A row whose path leads to one photo is not taken
+    for a photo of the same name in another folder. A photo that no row names is matched
+    by the block and lot in its own name, if the catalogue has that lot; else it is
+    rejected.
     """
-    by_name: dict[str, list[Entry]] = {}
-    by_lot: dict[tuple[str, str], list[Entry]] = {}
+    by_path: dict[str, list[Entry]] = defaultdict(list)
+    by_name: dict[str, list[Entry]] = defaultdict(list)
+    by_lot: dict[tuple[str, str], list[Entry]] = defaultdict(list)
+    paths = {_path(photo) for photo in photos}
     for entry in entries:
-        if entry.photo:
-            by_name.setdefault(_stem(entry.photo), []).append(entry)
-        by_lot.setdefault((entry.block, entry.lot), []).append(entry)
+        where = _path(entry.photo)
+        if where in paths:
+            by_path[where].append(entry)
+        if entry.photo and ("/" not in where or where not in paths):
+            by_name[PurePosixPath(where).name].append(entry)
+        by_lot[entry.block, entry.lot].append(entry)
     found, rejections = {}, []
     for photo in photos:
         lot = from_file_name(photo)
-        rows = by_name.get(_stem(photo)) or (by_lot.get(lot, []) if lot else [])
+        where = _path(photo)
+        rows = by_path.get(where) or by_name.get(PurePosixPath(where).name)
+        rows = rows or (by_lot.get(lot) if lot else None)
         if rows:
             found[photo] = tuple(rows)
         else:
@@ -132,6 +147,21 @@ def _columns(rows: Sequence[Mapping[str, str | None]]) -> dict[str, str]:
     return fields
 
 
+def _check_width(row: Mapping[Any, Any]) -> None:
+    """Refuse a row with more cells than columns: its cells may be of other columns.
+
+    Raises:
+        ValueError: "reason: remedy".
+    """
+    surplus = [_text(cell) for cell in row.get(None) or ()]
+    if any(surplus):
+        beyond = ", ".join(surplus)[:80]
+        raise ValueError(
+            f"too many cells: {beyond!r} stands beyond the last column; put texts that "
+            "hold commas in quotes"
+        )
+
+
 def _plain(column: object) -> str:
     """Write a column's name in small letters, one underscore between its words."""
     return re.sub(r"[^a-z0-9]+", "_", str(column).casefold()).strip("_")
@@ -141,5 +171,7 @@ def _text(cell: object) -> str:
     return str(cell if cell is not None else "").strip()
 
 
-def _stem(photo: str) -> str:
-    return PurePosixPath(photo.replace("\\", "/")).stem.strip().casefold()
+def _path(photo: str) -> str:
+    """Write a photo's path as it is compared."""
+    path = PurePosixPath(photo.replace("\\", "/"))
+    return (path.parent / path.stem.strip()).as_posix().casefold()

@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from typing import Final
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.lengths import later_building, length, number
+from nostalgin_core.lengths import count, later_building, length, number
 
 TAX_PHOTO: Final = re.compile(r"(?:^|_)(\d{5})_(\d{4})([a-z]?)$")
 
@@ -54,7 +54,7 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         width_m = depth_m = None
         doubts, more = [later], []
     order = number(cells, "order")
-    ring, side = number(cells, "ring"), number(cells, "side")
+    ring, side = count(cells, "ring"), count(cells, "side")
     made = Entry(
         row=row,
         photo=photo,
@@ -64,8 +64,8 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         address=cells.get("address", ""),
         width_m=width_m,
         depth_m=depth_m,
-        ring=None if ring is None else int(ring),
-        side=None if side is None else int(side),
+        ring=ring,
+        side=side,
         order=order,
         credit=cells.get("credit", ""),
     )

@@ -13,6 +13,7 @@ from nostalgin_core.address import house_numbers
 
 FOOT_M: Final = 0.3048
 NARROWEST_FT, WIDEST_FT = 8.0, 450.0  # of a front; beyond, a digit was lost
+MOST_SIDES: Final = 99  # of a ring, and rings of a block
 LOT_FT: Final = 25.0  # the common lot of New York: 25 by 100 feet
 
 
@@ -28,7 +29,8 @@ def feet(written: str) -> float | None:
 
     What is then under 8 feet or over 450 is no front: a digit was lost elsewhere.
     """
-    found = re.fullmatch(r"(\d*)(?:\.(\d*))?", written.strip().removesuffix("'"))
+    bare = written.strip().removesuffix("'")
+    found = re.fullmatch(r"(\d{0,9})(?:\.(\d{0,9}))?", bare)
     if found is None or not written.strip(" .'"):
         return None
     whole, digits = int(found[1] or 0), found[2] or ""
@@ -87,7 +89,7 @@ def later_building(cells: Mapping[str, str]) -> str:
 
 
 def number(cells: Mapping[str, str], field: str) -> float | None:
-    """Read a cell that holds a number, or nothing.
+    """Read a cell that holds a number of up to nine digits, or nothing.
 
     Raises:
         ValueError: "reason: remedy", if it holds something else.
@@ -95,6 +97,18 @@ def number(cells: Mapping[str, str], field: str) -> float | None:
     written = cells.get(field, "")
     if not written:
         return None
-    if not re.fullmatch(r"\d+(\.\d+)?", written):
-        raise ValueError(f"nonsense {field}: {written!r}; write a number")
+    if not re.fullmatch(r"\d{1,9}(\.\d{1,9})?", written):
+        raise ValueError(f"nonsense {field}: {written[:40]!r}; write a number")
     return float(written)
+
+
+def count(cells: Mapping[str, str], field: str) -> int | None:
+    """Read a cell that counts sides or rings, or holds nothing.
+
+    Raises:
+        ValueError: "reason: remedy", if it is not 0 to 99.
+    """
+    value = number(cells, field)
+    if value is not None and (value != int(value) or value > MOST_SIDES):
+        raise ValueError(f"nonsense {field}: {cells[field]!r}; count from 0 to 99")
+    return None if value is None else int(value)

@@ -1,3 +1,5 @@
+from typing import Any
+
 import pytest
 
 from nostalgin_core import catalogue
@@ -37,6 +39,8 @@ PLAIN = {
         ("115\u2013119", (115, 119)),
         ("", None),
         ("rear", None),
+        ("9" * 5000, None),
+        ("7-" + "9" * 5000, (7, 7)),
     ],
 )
 def test_house_numbers(address: str, numbers: tuple[int, int] | None) -> None:
@@ -80,11 +84,16 @@ def test_a_plain_catalogue_is_read_and_unknown_columns_are_named() -> None:
         ({"width_m": "-3"}, "nonsense width_m"),
         ({"width_m": "0"}, "nonsense width_m"),
         ({"side": "north"}, "nonsense side"),
+        ({"side": "1000000000"}, "nonsense side"),
+        ({"side": "9" * 400}, "nonsense side"),
+        ({"ring": "0.5"}, "nonsense ring"),
+        ({"order": "9" * 400}, "nonsense order"),
+        ({None: ["5", "7"]}, "too many cells"),
         ({"lot": "../1"}, "nonsense block or lot"),
     ],
 )
 def test_a_nonsense_row_is_rejected_by_its_number_and_spoils_no_other(
-    cells: dict[str, str], reason: str
+    cells: dict[Any, Any], reason: str
 ) -> None:
     read = catalogue.read([PLAIN, PLAIN | cells], name="list.csv")
     assert len(read.entries) == 1
@@ -115,6 +124,30 @@ CORNER = {
     "Alternative Building Number": "155",
     "Alternative Street Name": "West 40 Street",
 }
+
+
+def test_of_two_photos_of_one_name_each_finds_the_row_with_its_folder() -> None:
+    rows = [
+        PLAIN | {"photo": f"{folder}/12.jpg", "lot": lot}
+        for folder, lot in (("west", "7"), ("east", "8"))
+    ]
+    entries = catalogue.read(rows).entries
+    found, _ = catalogue.matched(entries, ["east/12.JPG", "west/12.jpg"])
+    lots = {photo: [one.lot for one in some] for photo, some in found.items()}
+    assert lots == {"east/12.JPG": ["8"], "west/12.jpg": ["7"]}
+
+
+def test_a_row_may_name_a_folder_that_the_photos_have_left() -> None:
+    entries = catalogue.read([PLAIN]).entries
+    found, rejections = catalogue.matched(entries, ["12.jpg"])
+    assert found == {"12.jpg": entries}
+    assert not rejections
+
+
+def test_empty_cells_beyond_the_last_column_do_no_harm() -> None:
+    read = catalogue.read([PLAIN | {None: ["", " "]}])  # type: ignore[list-item]
+    assert len(read.entries) == 1
+    assert not read.warnings
 
 
 def test_an_alternative_address_is_a_corner_lot_s_second_front() -> None:

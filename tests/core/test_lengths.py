@@ -31,7 +31,7 @@ def test_a_fraction_that_can_be_no_inches_is_decimal() -> None:
 
 
 @pytest.mark.parametrize(
-    "written", ["", ".", "0", "0.05", "7.99", "-20", "wide", "9999"]
+    "written", ["", ".", "0", "0.05", "7.99", "-20", "wide", "9999", "9" * 5000]
 )
 def test_what_makes_no_front_is_not_read(written: str) -> None:
     assert lengths.feet(written) is None
