@@ -69,8 +69,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     found = manifest.read(store)
     for warning in found.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
-    if found.mended:
-        manifest.write(store, [row.cells for row in found.rows], title=found.title)
+    manifest.rewrite(store, found)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORK.values():
         models.read(network)  # a spoiled file is told here, not by every photo

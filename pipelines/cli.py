@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Annotated, Final
 
 import typer
-from rich.console import Console
 
 from pipelines import examples
 from pipelines.evaluate import commands
+from pipelines.failure import errors, fail, unwritable
 from pipelines.voice import Voice, summed
 
-FAILED: Final = 1
 TOO_MANY_REJECTIONS: Final = 3
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
@@ -32,7 +31,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.add_typer(commands.app, name="evaluate")
-errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
 ModelsFolder = Annotated[
     Path | None,
@@ -48,19 +46,6 @@ def nostalgin() -> None:
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
 ]
-
-
-def fail(message: str) -> typer.Exit:
-    """Say on standard error what went wrong and how to mend it."""
-    errors.print("[bold red]error:[/] ", end="")
-    errors.print(message, markup=False)
-    return typer.Exit(FAILED)
-
-
-def unwritable(folder: str | Path, problem: OSError) -> typer.Exit:
-    """Say that results could not be put where they were wanted."""
-    why = problem.strerror or str(problem)
-    return fail(f"{folder}: {why}; name a folder that can be written to")
 
 
 @app.command("explain", epilog=examples.EXPLAIN)
@@ -209,6 +194,8 @@ def build_command(
             report = build(chosen, voice)
     except (Unusable, Unlocked, Lost, ViewerMissingError) as problem:
         raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(city, problem) from problem
     summed(report, voice)
     if report.rejected_share > max_rejected:
         raise typer.Exit(TOO_MANY_REJECTIONS)
@@ -218,7 +205,10 @@ def build_command(
 def view_command(
     city: Annotated[Path, typer.Argument(help="The city folder, or its site.")],
     *,
-    port: Annotated[int, typer.Option(help="Port on this machine; 0 takes any.")] = 0,
+    port: Annotated[
+        int,
+        typer.Option(min=0, max=65535, help="Port on this machine; 0 takes any."),
+    ] = 0,
     browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
 ) -> None:
     """Serve the city to this machine alone and open it in a browser."""
@@ -256,11 +246,13 @@ def demo_command(
 
     one_thread()
     logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
-    from pipelines.build import build
+    from pipelines.build import Lost, build
     from pipelines.demo import CREDIT, TITLE, painted
     from pipelines.hush import hushed
     from pipelines.index import index
+    from pipelines.models import Unlocked
     from pipelines.options import options
+    from pipelines.site import ViewerMissingError
     from pipelines.view import view
 
     voice = Voice(errors, machine=json_lines)
@@ -270,12 +262,17 @@ def demo_command(
             words = f"painted {done} of {whole} photographs"
             voice.say("painted", words, done=done, whole=whole)
 
-    photos, listed = painted(folder, blocks=blocks, tell=tell)
-    index(photos, listed, str(folder), credit=CREDIT, title=TITLE)
     workers = [f"--direct_num_workers={min(os.cpu_count() or 1, MOST_WORKERS)}"]
     chosen = options(str(folder), beam=context.args or workers)
-    with hushed(errors):
-        report = build(chosen, voice)
+    try:
+        photos, listed = painted(folder, blocks=blocks, tell=tell)
+        index(photos, listed, str(folder), credit=CREDIT, title=TITLE)
+        with hushed(errors):
+            report = build(chosen, voice)
+    except (Unlocked, Lost, ViewerMissingError) as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(folder, problem) from problem
     summed(report, voice)
     site = folder / "site"
     voice.say(

@@ -194,8 +194,13 @@ def rejection_entry(one: Rejection) -> dict[str, Any]:
 
 
 def saved(out: Path, name: str, image: np.ndarray) -> str:
-    """Write a picture and give its file name."""
-    cv2.imwrite(str(out / f"{name}.png"), image, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+    """Write a picture and give its file name.
+
+    Raises:
+        OSError: if it can't be written there; OpenCV would not tell.
+    """
+    _, code = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+    (out / f"{name}.png").write_bytes(code.tobytes())
     return f"{name}.png"
 
 

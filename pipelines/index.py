@@ -1,6 +1,7 @@
 """From a folder of photos and a catalogue to the manifest of a city."""
 
 import csv
+import hashlib
 import io
 import os
 import re
@@ -21,6 +22,7 @@ from pipelines.title import cleaned
 SUFFIXES: Final = (
     ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
 )
+LONGEST: Final = 48  # letters of a folder that names a block
 # 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
 BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
 
@@ -59,8 +61,8 @@ def index(
     Raises:
         Nothing: if there are no photos, or no row of the catalogue makes sense.
     """
-    names = images(photos)
-    read = from_names(names, photos.name) if listed is None else from_csv(listed)
+    names, unnamed = spelt(images(photos))
+    read = from_names(names, photos) if listed is None else from_csv(listed)
     wanted = [e for e in read.entries if not blocks or e.block in blocks]
     if not wanted:
         raise Nothing(
@@ -85,7 +87,7 @@ def index(
         blocks=len({front.block for front in fronts}),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
-        rejections=(*read.rejections, *(strangers if not blocks else ())),
+        rejections=(*unnamed, *read.rejections, *(strangers if not blocks else ())),
         warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts),
     )
 
@@ -109,6 +111,9 @@ def images(folder: Path) -> list[str]:
     """
     if not folder.is_dir():
         raise Nothing(f"{folder} is no folder: name the folder that holds the photos")
+    if not textual(os.path.abspath(folder)):  # noqa: PTH100 - a link stays a link
+        shown = os.fsencode(folder).decode(errors="backslashreplace")
+        raise Nothing(f"{shown}: a folder's name is not UTF-8; rename it")
     found = sorted(
         path.relative_to(folder).as_posix()
         for path in folder.rglob("*")
@@ -119,6 +124,29 @@ def images(folder: Path) -> list[str]:
     return found
 
 
+def spelt(names: Sequence[str]) -> tuple[list[str], list[Rejection]]:
+    """Part the files whose names are text from those whose bytes spell none.
+
+    Raises:
+        Nothing: if no name is text.
+    """
+    kept = [name for name in names if textual(name)]
+    odd = [os.fsencode(name).decode(errors="backslashreplace") for name in names]
+    rejections = [
+        Rejection(shown, "catalogue", "file name is not UTF-8", "rename the file")
+        for name, shown in zip(names, odd, strict=True)
+        if not textual(name)
+    ]
+    if not kept:
+        raise Nothing(f"{rejections[0].key}: {rejections[0].reason}; rename the files")
+    return kept, rejections
+
+
+def textual(name: str) -> bool:
+    """Tell whether a file's name is text; a file system takes any bytes."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
 def from_csv(path: Path) -> Catalogue:
     """Read a catalogue.
 
@@ -127,28 +155,51 @@ def from_csv(path: Path) -> Catalogue:
     """
     try:
         text = path.read_bytes().decode("utf-8-sig")
-        rows = list(csv.DictReader(io.StringIO(text, newline=""), strict=True))
+        reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
+        rows, names = list(reader), list(reader.fieldnames or [])
     except OSError as problem:
         raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
     except (UnicodeDecodeError, csv.Error) as problem:
         raise Nothing(f"{path} is no CSV in UTF-8 ({problem})") from problem
-    rows = [{name: cell for name, cell in row.items() if name} for row in rows]
+    if len(names) == 1 and (mark := re.search(r"[;\t|]", names[0])):
+        raise Nothing(f"{path} parts its cells by {mark[0]!r}: save it with commas")
     read = catalogue.read(rows, name=path.name)
-    if not read.entries:
-        first = read.rejections[0] if read.rejections else None
-        why = f"{first.key}: {first.reason}: {first.detail}" if first else "it is empty"
-        raise Nothing(f"{path} has no row that makes sense; {why}")
-    return read
+    return useful(read, path)
 
 
-def from_names(names: Sequence[str], folder: str) -> Catalogue:
-    """Make a catalogue of what the file names tell."""
+def useful(read: Catalogue, path: Path) -> Catalogue:
+    """Insist on one row that makes sense; else name the first that makes none.
+
+    Raises:
+        Nothing: if there is none.
+    """
+    if read.entries:
+        return read
+    told = [f"{one.key}: {one.reason}: {one.detail}" for one in read.rejections[:1]]
+    why = "".join(told) or "it is empty"
+    raise Nothing(f"{path} has no row that makes sense; {why}")
+
+
+def from_names(names: Sequence[str], folder: Path) -> Catalogue:
+    """Make a catalogue of what the file names tell.
+
+    Raises:
+        Nothing: if no name makes sense.
+    """
     told = {name: block_and_lot(name) for name in names}
     rows = []
     for place, name in enumerate(names, 1):
-        block, lot = told[name] or (Path(name).parent.name or folder, str(place))
+        row = (row_name(Path(name).parent.name or folder.name), str(place))
+        block, lot = told[name] or row
         rows.append({"photo": name, "block": block, "lot": lot})
-    return catalogue.read(rows, name="file names")
+    return useful(catalogue.read(rows, name="file names"), folder)
+
+
+def row_name(folder: str) -> str:
+    """Call a row of photos after its folder; a name that is no block's is replaced."""
+    if len(folder) <= LONGEST and not set(folder) & set("/\\\0") and folder.strip():
+        return folder
+    return f"row {hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]}"
 
 
 def block_and_lot(name: str) -> tuple[str, str] | None:

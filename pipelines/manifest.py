@@ -10,7 +10,6 @@ import csv
 import hashlib
 import io
 from dataclasses import dataclass, field, replace
-from pathlib import PurePosixPath
 from typing import Any, Final
 
 import pyarrow as pa
@@ -18,6 +17,7 @@ import pyarrow.parquet as pq
 
 from nostalgin_core.records import Front, Rejection
 from pipelines import tables
+from pipelines.cells import front_from, inside, text
 from pipelines.store import Store, parquet_bytes
 
 PARQUET: Final = "manifest.parquet"
@@ -34,10 +34,8 @@ PHOTO: Final = pa.schema(
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
-ASSUMED_WIDTH_M: Final = 7.62  # 25 feet, the common lot of New York
+DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
-YES: Final = ("true", "1", "yes")
-NO: Final = ("false", "0", "no", "")
 
 
 class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
@@ -96,6 +94,24 @@ def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
     store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
 
 
+def rewrite(store: Store, found: Manifest) -> None:
+    """Write a manifest that was mended by hand anew, in both forms.
+
+    While a row of it is rejected it is left as it is: that row is still to be mended.
+    """
+    if found.mended and not found.rejections:
+        write(store, [typed(row) for row in found.rows], title=found.title)
+
+
+def typed(row: Row) -> dict[str, Any]:
+    """Write a row's cells as the schema's types, unknown columns as they are."""
+    known = row_of(row.photo, row.front, root=row.root, credit=row.credit)
+    if row.front is None:  # what is known of a front that has no name yet is kept
+        words = [one.name for one in FRONT if one.type == pa.string()]
+        known |= {name: text(row.cells, name) for name in words}
+    return row.cells | known
+
+
 def place(row: dict[str, Any]) -> tuple[Any, ...]:
     """Order rows as one would walk: by block, ring, round the ring, then by photo."""
     return (
@@ -109,8 +125,10 @@ def place(row: dict[str, Any]) -> tuple[Any, ...]:
 
 
 def natural(text: str | None) -> tuple[int, str]:
-    """Order numbers by value and words after them."""
-    return (int(text), "") if text and text.isdecimal() else (10**9, text or "")
+    """Order numbers of up to nine digits by value, and all else after them."""
+    if text and text.isdecimal() and len(text) <= DIGITS:
+        return int(text), ""
+    return 10**DIGITS, text or ""
 
 
 def to_csv(rows: list[dict[str, Any]], names: list[str]) -> str:
@@ -155,7 +173,7 @@ def parsed(data: bytes, where: str) -> pa.Table:
     """Parse the Parquet form."""
     try:
         return pq.read_table(io.BytesIO(data))
-    except pa.ArrowInvalid as problem:
+    except (pa.ArrowInvalid, OSError) as problem:
         raise Unusable(
             f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
             f"{CSV} will be read, or run `nostalgin index` again"
@@ -213,72 +231,3 @@ def usable(number: int, cells: dict[Any, Any]) -> Row | Rejection:
     if front is None and not photo:
         return Rejection(name, "manifest", "empty row", "name a photo or a front")
     return Row(number, text(cells, "root"), photo, front, text(cells, "credit"), cells)
-
-
-def inside(photo: str) -> bool:
-    """Tell whether a path stays within the folder it is relative to."""
-    path = PurePosixPath(photo.replace("\\", "/"))
-    drive = len(photo) > 1 and photo[1] == ":"
-    return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)
-
-
-def text(cells: dict[str, Any], name: str) -> str:
-    """Read a cell of words; a missing one is empty."""
-    return str(cells.get(name) or "").strip()
-
-
-def front_from(cells: dict[str, Any]) -> Front | None:
-    """Read the front of a row.
-
-    Raises:
-        ValueError: if a cell holds no number where one is needed.
-    """
-    if not text(cells, "front_id"):
-        return None
-    width_m = number(cells, "width_m", None)
-    return Front(
-        front_id=text(cells, "front_id"),
-        block=needed(cells, "block"),
-        lot=needed(cells, "lot"),
-        ring=int(number(cells, "ring", 0)),
-        side=int(number(cells, "side", 0)),
-        rank=int(number(cells, "rank", 0)),
-        street=text(cells, "street"),
-        address=text(cells, "address"),
-        width_m=ASSUMED_WIDTH_M if width_m is None else width_m,
-        depth_m=number(cells, "depth_m", None),
-        width_assumed=width_m is None or flag(cells, "width_assumed"),
-    )
-
-
-def needed(cells: dict[str, Any], name: str) -> str:
-    """Read a cell that may not be empty."""
-    if not text(cells, name):
-        raise ValueError(f"{name} is empty")
-    return text(cells, name)
-
-
-def number(cells: dict[str, Any], name: str, otherwise: Any) -> Any:
-    """Read a number that is not negative; an empty cell counts as `otherwise`."""
-    written = str(cells.get(name) if cells.get(name) is not None else "").strip()
-    if not written:
-        return otherwise
-    try:
-        value = float(written)
-    except ValueError as problem:
-        raise ValueError(f"{name} is {written!r}, no number") from problem
-    if not 0 <= value < float("inf"):
-        raise ValueError(f"{name} is {written!r}, not a length or a count")
-    if name == "width_m" and value == 0:
-        raise ValueError("width_m is 0")
-    return value
-
-
-def flag(cells: dict[str, Any], name: str) -> bool:
-    """Read yes or no."""
-    written = str(cells.get(name) if cells.get(name) is not None else "").lower()
-    if written in YES:
-        return True
-    if written in NO:
-        return False
-    raise ValueError(f"{name} is {written!r}, neither true nor false")

@@ -32,7 +32,14 @@ class Models:
         path = Path(self.folder) / LOCK
         if not path.is_file():
             raise Unlocked(f"{self.folder} has no {LOCK}: name a folder that has one")
-        lock = json.loads(path.read_text())
+        try:
+            lock = json.loads(path.read_bytes())
+        except ValueError as problem:
+            raise Unlocked(f"{path} is no JSON ({problem})") from problem
+        if not isinstance(lock, dict) or not all(
+            isinstance(one, str) for one in lock.values()
+        ):
+            raise Unlocked(f"{path} must map names of files to their SHA-256")
         if f"{name}.onnx" not in lock:
             raise Unlocked(f"{path} names no {name}.onnx, only {sorted(lock)}")
         return lock[f"{name}.onnx"]

@@ -8,6 +8,7 @@ makes new ones beside the old. It is written under another name and then moved, 
 a killed run leaves no half of one. A rejection is an artifact too.
 """
 
+import errno
 import hashlib
 import io
 import os
@@ -51,9 +52,17 @@ class Store:
     root: str  # a path, or a URI such as s3://bucket/city
 
     def _open(self) -> tuple[pafs.FileSystem, str]:
+        """Find the file system.
+
+        Raises:
+            OSError: if the URI names none.
+        """
         local = "://" not in self.root
         where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
-        return pafs.FileSystem.from_uri(where)
+        try:
+            return pafs.FileSystem.from_uri(where)
+        except pa.ArrowInvalid as problem:
+            raise OSError(errno.EINVAL, str(problem), self.root) from problem
 
     def exists(self, name: str) -> bool:
         """Tell whether a file is there."""

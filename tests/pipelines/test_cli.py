@@ -73,6 +73,42 @@ def test_a_folder_that_can_not_be_written_is_named(tmp_path: Path) -> None:
     assert "Traceback" not in result.output
 
 
+@pytest.mark.parametrize("command", ["index", "build"])
+def test_an_address_that_no_file_system_answers_to_is_named(
+    command: str, tmp_path: Path
+) -> None:
+    (tmp_path / "5_1.jpg").write_bytes(b"x")
+    words = {"index": [tmp_path, "-o", "foo://city"], "build": ["foo://city"]}
+    result = nostalgin(command, *words[command])
+    assert result.exit_code == 1
+    assert "foo://city" in result.output
+    assert "Traceback" not in result.output
+
+
+def test_a_demo_that_can_not_be_written_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    result = nostalgin("demo", "-o", tmp_path / "file" / "city", "--no-browser")
+    assert result.exit_code == 1
+    assert "file/city" in result.output
+    assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("port", ["-1", "65536", "http"])
+def test_a_port_that_is_none_is_wrong_usage(port: str, tmp_path: Path) -> None:
+    assert nostalgin("view", tmp_path, "--port", port).exit_code == 2
+
+
+@pytest.mark.parametrize("lock", ["", "{", "[]", '{"segment.onnx": 1}', "{}"])
+def test_a_lock_that_makes_no_sense_is_named(tmp_path: Path, lock: str) -> None:
+    photo = tmp_path / "photo.png"
+    photo.write_bytes(painted.photo())
+    (tmp_path / "models.lock").write_text(lock)
+    result = nostalgin("explain", photo, "-o", tmp_path / "out", "--models", tmp_path)
+    assert result.exit_code == 1
+    assert "models.lock" in result.output
+    assert "Traceback" not in result.output
+
+
 def test_a_folder_of_models_without_a_lock_is_refused(tmp_path: Path) -> None:
     photo = tmp_path / "photo.png"
     photo.write_bytes(painted.photo())

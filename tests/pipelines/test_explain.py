@@ -187,3 +187,8 @@ def test_the_schema_travels_with_the_package(out: Path) -> None:
         pytest.skip("the contract's original is not here")
     shutil.copy(shared, out / "schema.json")
     assert json.loads((out / "schema.json").read_text()) == SCHEMA
+
+
+def test_a_picture_that_can_not_be_written_is_no_secret(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="gone"):
+        page.saved(tmp_path / "gone", "photo", np.zeros((4, 4), np.uint8))

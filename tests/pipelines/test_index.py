@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import pytest
@@ -131,6 +132,56 @@ def test_a_missing_folder_is_refused_by_name(tmp_path: Path) -> None:
 def test_a_nonsense_catalogue_is_refused_by_name(photos: Path, text: str) -> None:
     with pytest.raises(Nothing, match=r"list\.csv"):
         indexed(photos, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("photo;block;lot\nb/993_1.jpg;993;1\n", "save it with commas"),
+        ("block,lot\n993,\n", "row 2: no lot: fill in the cell"),
+        ("block,lot\n993,1,7\n", "row 2: too many cells"),
+    ],
+)
+def test_a_catalogue_without_a_good_row_names_its_first_bad_one(
+    photos: Path, text: str, words: str
+) -> None:
+    with pytest.raises(Nothing, match=words):
+        indexed(photos, text)
+
+
+def test_a_file_whose_name_is_no_text_is_named_and_spoils_no_other(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for name in (b"\xff.jpg", b"5_1.jpg", b"two\nlines.jpg"):
+        Path(os.fsdecode(os.fsencode(folder) + b"/" + name)).write_bytes(b"x")
+    made = indexed(folder, None)
+    assert made.photos == 2
+    assert [one.key for one in made.rejections] == ["\\xff.jpg"]
+    (folder / "5_1.jpg").unlink()
+    (folder / "two\nlines.jpg").unlink()
+    with pytest.raises(Nothing, match="rename the files"):
+        indexed(folder, None)
+
+
+@pytest.mark.parametrize("name", ["x" * 100, "a\\b"])
+def test_a_folder_whose_name_is_no_block_s_is_a_row_all_the_same(
+    tmp_path: Path, name: str
+) -> None:
+    folder = tmp_path / "photos" / name
+    folder.mkdir(parents=True)
+    (folder / "bakery.jpg").write_bytes(b"x")
+    made = indexed(tmp_path / "photos", None)
+    assert (made.photos, made.fronts, made.rejections) == (1, 1, ())
+
+
+def test_names_of_which_none_makes_sense_are_told_by_the_first(tmp_path: Path) -> None:
+    folder = tmp_path / "photos" / " "
+    folder.mkdir(parents=True)
+    (folder / "bakery.jpg").write_bytes(b"x")
+    with pytest.raises(Nothing, match="file names row 2: path outside"):
+        indexed(tmp_path / "photos", None)
 
 
 def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:

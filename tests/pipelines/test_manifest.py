@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from nostalgin_core.records import Front
-from pipelines import manifest
+from pipelines import cells, manifest
 from pipelines.manifest import Unusable
 from pipelines.store import Store
 from tests.data import ROOT
@@ -71,6 +71,25 @@ def test_a_manifest_without_a_title_has_none(store: Store) -> None:
     assert manifest.read(store).title == ""
 
 
+def test_a_mended_csv_is_written_anew_and_says_the_same(store: Store) -> None:
+    edit(store, ("561-565", "561"))
+    mended = manifest.read(store)
+    manifest.rewrite(store, mended)
+    again = manifest.read(store)
+    assert mended.mended
+    assert not again.mended
+    fronts = [(row.photo, row.front, row.credit) for row in mended.rows]
+    assert [(row.photo, row.front, row.credit) for row in again.rows] == fronts
+
+
+def test_a_mended_csv_is_left_alone_while_a_row_of_it_is_rejected(store: Store) -> None:
+    edit(store, ("18.06", "wide"))
+    before = (Path(store.root) / manifest.CSV).read_bytes()
+    manifest.rewrite(store, manifest.read(store))
+    assert (Path(store.root) / manifest.CSV).read_bytes() == before
+    assert manifest.read(store).rejections
+
+
 def test_an_untouched_csv_is_not_read(store: Store) -> None:
     before = manifest.read(store)
     path = Path(store.root) / manifest.CSV
@@ -91,12 +110,12 @@ def test_unknown_columns_are_kept_with_a_warning(store: Store) -> None:
     ["../a.jpg", "b/../../a.jpg", "/etc/a.jpg", "C:\\a.jpg", "..\\a.jpg", "a\0.jpg"],
 )
 def test_a_path_that_leads_outside_is_inside_nothing(path: str) -> None:
-    assert not manifest.inside(path)
+    assert not cells.inside(path)
 
 
 @pytest.mark.parametrize("path", ["a.jpg", "b/a.jpg", "b/..a.jpg", "a..b.jpg", ""])
 def test_a_path_below_is_inside(path: str) -> None:
-    assert manifest.inside(path)
+    assert cells.inside(path)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +125,13 @@ def test_a_path_below_is_inside(path: str) -> None:
         (("18.06", "wide"), "nonsense cell", "width_m is 'wide'"),
         (("18.06", "-3"), "nonsense cell", "width_m is '-3'"),
         (("18.06", "nan"), "nonsense cell", "width_m is 'nan'"),
-        (("18.06", "0"), "nonsense cell", "width_m is 0"),
+        (("18.06", "0"), "nonsense cell", "width_m is '0'"),
+        (("18.06", "1e300"), "nonsense cell", "not 1 to 400 metres"),
+        (("18.3", "1e-9"), "nonsense cell", "not 1 to 400 metres"),
+        (("18.06", "9" * 5000), "nonsense cell", "999...', not"),
+        (("993,1,0,0,0", "993,1,1e30,0,0"), "nonsense cell", "ring is '1e30'"),
+        (("993,1,0,0,0", "993,1,0,1000000,0"), "nonsense cell", "up to 99"),
+        (("993,1,0,0,0", "993,1,0,0,0.5"), "nonsense cell", "rank is '0.5'"),
         (("False", "perhaps"), "nonsense cell", "perhaps"),
         (("993-1-0,993", "993-1-0,"), "nonsense cell", "block is empty"),
         (("561-565", "561,565"), "", ""),
@@ -154,7 +179,12 @@ def test_a_width_left_empty_is_assumed(store: Store) -> None:
     front = manifest.read(store).rows[0].front
     assert front is not None
     assert front.width_assumed
-    assert front.width_m == manifest.ASSUMED_WIDTH_M
+    assert front.width_m == cells.ASSUMED_WIDTH_M
+
+
+def test_a_block_s_name_may_have_any_number_of_digits() -> None:
+    huge = "9" * 5000
+    assert sorted([huge, "10"], key=manifest.natural) == ["10", huge]
 
 
 def test_blocks_stand_in_the_order_of_their_numbers() -> None:

@@ -1,0 +1,106 @@
+"""What the cells of a manifest's row say, as people write them.
+
+A cell that makes no sense is an error that names its column and quotes what is written.
+"""
+
+from pathlib import PurePosixPath
+from typing import Any, Final
+
+from nostalgin_core.records import Front
+
+ASSUMED_WIDTH_M: Final = 7.62  # 25 feet, the common lot of New York
+QUOTED: Final = 40  # letters
+MOST_SIDES, MOST_FRONTS = 99, 9999  # of a ring; no block has more
+LEAST_M, MOST_M = 1.0, 400.0  # of a front's width or depth
+YES: Final = ("true", "1", "yes")
+NO: Final = ("false", "0", "no", "")
+
+
+def inside(photo: str) -> bool:
+    """Tell whether a path stays within the folder it is relative to."""
+    path = PurePosixPath(photo.replace("\\", "/"))
+    drive = len(photo) > 1 and photo[1] == ":"
+    return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)
+
+
+def text(cells: dict[str, Any], name: str) -> str:
+    """Read a cell of words; a missing one is empty."""
+    return str(cells.get(name) or "").strip()
+
+
+def front_from(cells: dict[str, Any]) -> Front | None:
+    """Read the front of a row.
+
+    Raises:
+        ValueError: if a cell holds no number where one is needed.
+    """
+    if not text(cells, "front_id"):
+        return None
+    width_m = length(cells, "width_m")
+    return Front(
+        front_id=text(cells, "front_id"),
+        block=needed(cells, "block"),
+        lot=needed(cells, "lot"),
+        ring=count(cells, "ring", MOST_SIDES),
+        side=count(cells, "side", MOST_SIDES),
+        rank=count(cells, "rank", MOST_FRONTS),
+        street=text(cells, "street"),
+        address=text(cells, "address"),
+        width_m=ASSUMED_WIDTH_M if width_m is None else width_m,
+        depth_m=length(cells, "depth_m"),
+        width_assumed=width_m is None or flag(cells, "width_assumed"),
+    )
+
+
+def needed(cells: dict[str, Any], name: str) -> str:
+    """Read a cell that may not be empty."""
+    if not text(cells, name):
+        raise ValueError(f"{name} is empty")
+    return text(cells, name)
+
+
+def count(cells: dict[str, Any], name: str, most: int) -> int:
+    """Read a whole number from 0 to `most`; an empty cell counts as 0."""
+    value = number(cells, name) or 0.0
+    if value != int(value) or value > most:
+        raise ValueError(f"{name} is {shown(cells, name)}, not a count up to {most}")
+    return int(value)
+
+
+def length(cells: dict[str, Any], name: str) -> float | None:
+    """Read a length in metres that a front may have; an empty cell tells none."""
+    value = number(cells, name)
+    if value is not None and not LEAST_M <= value <= MOST_M:
+        limits = f"{LEAST_M:g} to {MOST_M:g} metres"
+        raise ValueError(f"{name} is {shown(cells, name)}, not {limits}")
+    return value
+
+
+def number(cells: dict[str, Any], name: str) -> float | None:
+    """Read a number that is finite and not negative; None for an empty cell."""
+    written = str(cells.get(name) if cells.get(name) is not None else "").strip()
+    if not written:
+        return None
+    try:
+        value = float(written)
+    except ValueError as problem:
+        raise ValueError(f"{name} is {shown(cells, name)}, no number") from problem
+    if not 0 <= value < float("inf"):
+        raise ValueError(f"{name} is {shown(cells, name)}, not a length or a count")
+    return value
+
+
+def shown(cells: dict[str, Any], name: str) -> str:
+    """Quote a cell in a message, which a huge one would drown."""
+    written = str(cells[name]).strip()
+    return repr(written if len(written) <= QUOTED else f"{written[:QUOTED]}...")
+
+
+def flag(cells: dict[str, Any], name: str) -> bool:
+    """Read yes or no."""
+    written = str(cells.get(name) if cells.get(name) is not None else "").lower()
+    if written in YES:
+        return True
+    if written in NO:
+        return False
+    raise ValueError(f"{name} is {written!r}, neither true nor false")
