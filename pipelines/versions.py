@@ -21,9 +21,9 @@ from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 3,
+    "segment": 4,
     "matte": 3,
-    "rectify": 1,
+    "rectify": 2,
     "inpaint": 2,
     "block": 1,
     "thumbnail": 1,
