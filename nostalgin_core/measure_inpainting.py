@@ -110,7 +110,7 @@ def _gray(values: np.ndarray) -> np.ndarray:
     return np.clip(np.round(values), 0, 255).astype(np.uint8)
 
 
-def _elevation(image: Gray, marks: EvidenceMap) -> Elevation:
+def elevation(image: Gray, marks: EvidenceMap) -> Elevation:
     """Dress a picture as an elevation whose camera nobody asks for."""
     return Elevation(
         facade=0,
@@ -134,7 +134,7 @@ def methods(network: Network) -> dict[str, Fill]:
 
     def ours(image: Gray, hole: Mask, how: Callable[..., Elevation]) -> Gray:
         marks = np.where(hole, evidence.INPAINTED, evidence.PHOTOGRAPHED)
-        return how(_elevation(image, marks.astype(np.uint8)), network).image
+        return how(elevation(image, marks.astype(np.uint8)), network).image
 
     return {
         "Navier-Stokes": navier_stokes,

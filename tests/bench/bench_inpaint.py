@@ -21,7 +21,7 @@ import numpy as np
 
 from nostalgin_core import evidence, session
 from nostalgin_core.inpaint import low_memory, whole
-from nostalgin_core.measure_inpainting import _elevation, navier_stokes
+from nostalgin_core.measure_inpainting import elevation, navier_stokes
 from nostalgin_core.records import Elevation
 
 MODELS = Path(__file__).parents[2] / "nostalgin_core" / "models"
@@ -62,7 +62,7 @@ def front(h: int, w: int, *, hidden: float) -> Elevation:
     while (marks == evidence.INPAINTED).mean() < hidden:
         left = rng.integers(0, w - wide)
         marks[h - tall :, left : left + wide] = evidence.INPAINTED
-    return _elevation(image, marks)
+    return elevation(image, marks)
 
 
 def measured(task: str) -> tuple[float, float]:
