@@ -20,6 +20,7 @@ LEAST_INSIDE = 0.5  # of a line
 HIDDEN = 0.5  # alpha up to which something else is what the camera saw
 LEAST_LINES = 3.0  # whose weights support a direction
 BORROWED = 0.75  # of its own votes are enough for a direction that the street has
+MOST_OWN = 120  # lines of a front whose directions it may choose from
 WELL_KNOWN_DEG = 1.5  # the azimuth of a front that others may borrow from
 OUTLINE_DEG = 8.0  # how well a network's outline knows its directions
 SMALL_PX = 800  # the long side below which a photo is enlarged to find lines
@@ -63,8 +64,8 @@ def orient(
 ) -> Oriented:
     """Fit the upright world to the lines of all fronts.
 
-    Each front first chooses for itself. Once the camera is known, each may choose
-    again, between its own direction, those of better known fronts, and the ones square
+    Each front first chooses for itself. Once the camera is known, each chooses again,
+    between its own lines' directions, those of better known fronts, and the ones square
     to them; if any does, all are fitted again. A front without lines of its own then
     takes that one of the street's directions to which its outline runs.
     """
@@ -74,7 +75,7 @@ def orient(
     signals = [signal(photo, found, mask) for mask in clear]
     all_lines = signal(photo, found, anywhere)
     world = _fit(_start(signals, all_lines), signals)
-    again = _choose_again(world, signals)
+    again = choose_again(world, signals)
     if not np.array_equal(again, world.parameters):
         world = _fit(again, signals)
     own = UPRIGHT if world.support[0] < LEAST_LINES else BOTH
@@ -179,25 +180,28 @@ def _fit(parameters: Parameters, signals: list[Signal]) -> upright.Upright:
     )
 
 
-def _choose_again(world: upright.Upright, signals: list[Signal]) -> Parameters:
-    """Let each front vote between its own azimuth and those of better known fronts.
+def choose_again(world: upright.Upright, signals: list[Signal]) -> Parameters:
+    """Let each front vote anew, now that the camera is known.
 
-    A borrowed azimuth needs only `BORROWED` of the own one's votes, since the street
-    is evidence as well.
+    To choose from are its azimuth as it is, those that its own longest lines have if
+    they are level, and those of better known fronts and square to them. A borrowed
+    azimuth needs only `BORROWED` of the own one's votes, since the street is evidence
+    as well.
     """
     parameters = world.parameters.copy()
     theta = world.parameters[3:]
     sd = np.sqrt(np.diag(world.covariance))[3:]
+    up = upright.vanishing_points(parameters)[:1]
     for i, s in enumerate(signals):
+        away = vanish.distance_deg(up, s.loose)[0] > vanish.VERTICAL_DEG
+        level, weights = s.loose[away], s.weights[away]
+        longest = np.argsort(-vanish.lengths(level), kind="stable")[:MOST_OWN]
+        own = [theta[i], *upright.azimuths(world.parameters, level[longest])]
         better = theta[(sd < sd[i]) & (sd < np.radians(WELL_KNOWN_DEG))]
-        if not len(better):
-            continue
-        azimuths = np.concatenate([theta[i : i + 1], better, better + np.pi / 2])
+        azimuths = np.concatenate([own, better, better + np.pi / 2])
         trial = np.concatenate([world.parameters[:3], azimuths])
-        points = upright.vanishing_points(trial)
-        away = vanish.distance_deg(points[:1], s.loose)[0] > vanish.VERTICAL_DEG
-        votes = vanish.vote(points[1:], s.loose[away], s.weights[away])
-        votes[0] *= BORROWED
+        votes = vanish.vote(upright.vanishing_points(trial)[1:], level, weights)
+        votes[: len(own)] *= BORROWED
         parameters[3 + i] = azimuths[votes.argmax()]
     return parameters
 

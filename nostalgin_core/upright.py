@@ -81,6 +81,22 @@ def start(vertical: Float[np.ndarray, "3"], fronts: Homogeneous) -> np.ndarray:
     return np.concatenate([[0.0, rho, tau], theta])
 
 
+def azimuths(
+    parameters: Float[np.ndarray, " p"], lines: Lines
+) -> Float[np.ndarray, " n"]:
+    """Give the azimuth that each line has if it is level.
+
+    A line and the camera span a plane with normal (f a, f b, c), where a x + b y + c =
+    0 is the line; a level direction in it is square to the normal and to up.
+    """
+    focal = np.exp(parameters[0])
+    one = np.ones((len(lines), 1))
+    normals = np.cross(np.hstack([lines[:, :2], one]), np.hstack([lines[:, 2:], one]))
+    up, right, ahead = axes(np.array([*parameters[:3], 0.0, np.pi / 2]))
+    level = np.cross(normals * [focal, focal, 1.0], up)
+    return np.arctan2(level @ ahead, level @ right)
+
+
 def sines(
     parameters: Float[np.ndarray, " p"], lines: Lines, axis: Int[np.ndarray, " n"]
 ) -> Float[np.ndarray, " n"]:

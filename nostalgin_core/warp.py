@@ -17,6 +17,7 @@ MOST_PX = 4096  # the longest side of an elevation: the largest atlas's side
 MOST_MAGNIFIED = 2.0  # texels per photo pixel of the quad
 SEEN = 0.95  # alpha above which a texel is the front's alone
 SOFT = 0.1  # alpha below which nothing of the front is in it
+HALF = 127  # of 255: where a mask that is resampled ends
 
 
 def size(quad: Corners, aspect: float) -> tuple[int, int]:
@@ -71,7 +72,7 @@ def elevate(
         )
 
     seen = warped(alpha.astype(np.float32), cv2.INTER_LINEAR)
-    front = warped(amodal.astype(np.float32), cv2.INTER_LINEAR) >= 0.5
+    front = warped(amodal.astype(np.uint8) * 255, cv2.INTER_LINEAR) > HALF
     framed = within(frame, photo_from_elevation, shape)
     seen = np.where(framed, np.clip(seen, 0, 1), np.float32(0))
     rests_on = np.full(shape, evidence.NOTHING, np.uint8)
@@ -89,15 +90,26 @@ def elevate(
 def within(frame: Box, photo_from_elevation: Matrix3, shape: tuple[int, int]) -> Mask:
     """Tell which texels lie inside the exposed frame of the photo."""
     h, w = shape
-    y, x = np.mgrid[0:h, 0:w]
-    m = photo_from_elevation
-    u, v, depth = (m[i, 0] * x + m[i, 1] * y + m[i, 2] for i in range(3))
-    return (
-        (u >= frame.x0 * depth)
-        & (u <= (frame.x1 - 1) * depth)
-        & (v >= frame.y0 * depth)
-        & (v <= (frame.y1 - 1) * depth)
+    u, v, depth = photo_from_elevation
+    row = np.arange(h)
+    least, most = np.zeros(h), np.full(h, w - 1.0)
+    sides = (
+        u - frame.x0 * depth,
+        (frame.x1 - 1) * depth - u,
+        v - frame.y0 * depth,
+        (frame.y1 - 1) * depth - v,
     )
+    for a, b, c in sides:  # a x + b y + c >= 0 inside, so x is bounded in each row
+        rest = b * row + c
+        if a > 0:
+            least = np.maximum(least, -rest / a)
+        elif a < 0:
+            most = np.minimum(most, -rest / a)
+        else:
+            most = np.where(rest >= 0, most, -1.0)
+    x = np.arange(w)
+    first = np.ceil(least).astype(np.intp)[:, None]
+    return (x >= first) & (x <= np.floor(most).astype(np.intp)[:, None])
 
 
 def open_to_sky(empty: Mask) -> Mask:
@@ -106,6 +118,8 @@ def open_to_sky(empty: Mask) -> Mask:
     What a mask leaves out below that, in the wall or at its foot, was covered by
     something, since walls have no holes and stand on the ground.
     """
+    if not empty[0].any():
+        return np.zeros_like(empty)
     _, label = cv2.connectedComponents(empty.astype(np.uint8), connectivity=4)
     at_top = np.unique(label[0])
     return np.isin(label, at_top[at_top > 0])

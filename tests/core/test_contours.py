@@ -17,6 +17,15 @@ def test_thresholds_surround_the_median() -> None:
     assert contours.canny_thresholds(np.full((4, 4), 250, np.uint8))[1] == 255
 
 
+@pytest.mark.parametrize("shape", [(1, 1), (3, 5), (4, 7), (40, 30)])
+def test_the_histograms_median_is_the_median(shape: tuple[int, int]) -> None:
+    image = np.random.default_rng(shape[1]).integers(0, 256, shape, dtype=np.uint8)
+    low, high = contours.canny_thresholds(image)
+    median = np.median(image)
+    assert low == round(0.67 * median)
+    assert high == max(1, round(min(255, 1.33 * median)))
+
+
 def walked(mask: np.ndarray) -> contours.Contours:
     y, x = np.nonzero(mask)
     return contours.link(mask, np.column_stack([x, y]).astype(np.float64), shortest=3)

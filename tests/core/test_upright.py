@@ -58,6 +58,13 @@ def test_a_start_from_true_points_is_the_truth(
     )
 
 
+@given(theta=st.floats(-3, 3), tilt=st.floats(0, 0.4))
+def test_level_lines_tell_their_azimuth(theta: float, tilt: float) -> None:
+    true = np.array([0.1, 0.03, tilt, theta])
+    found = upright.azimuths(true, lines_of(true, 1, 8, seed=1))
+    np.testing.assert_allclose(np.sin(found - theta), 0, atol=1e-6)
+
+
 def test_clean_lines_give_the_world_back() -> None:
     true = np.array([0.15, 0.02, 0.2, -0.6, -0.6 + np.pi / 2])
     world = fitted(true, true + np.array([-0.15, 0.01, 0.02, 0.02, -0.02]), sd=0.0)

@@ -82,3 +82,22 @@ def test_elevations_stay_small_and_keep_their_aspect(
     assert w * h <= warp.MOST_MAGNIFIED * 60 * 80 * scale**2 + h + w
     if min(h, w) > 20:
         assert w / h == pytest.approx(aspect, rel=0.05)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rows_are_bounded_where_each_texel_would_be(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    quad = 1.4 * SQUARE - 15 + rng.normal(0, 9, (4, 2))
+    shape = (int(rng.integers(1, 70)), int(rng.integers(1, 90)))
+    matrix = warp.photo_from_elevation(quad, shape)
+    y, x = np.mgrid[: shape[0], : shape[1]]
+    u, v = homography.apply(matrix, np.column_stack([x.ravel(), y.ravel()]) * 1.0).T
+    inside = (u >= 0) & (u <= FRAME.x1 - 1) & (v >= 0) & (v <= FRAME.y1 - 1)
+    np.testing.assert_array_equal(
+        warp.within(FRAME, matrix, shape), inside.reshape(shape)
+    )
+
+
+def test_a_front_wholly_outside_the_frame_has_no_texel_within() -> None:
+    matrix = warp.photo_from_elevation(SQUARE + 500.0, (8, 6))
+    assert not warp.within(FRAME, matrix, (8, 6)).any()
