@@ -148,6 +148,21 @@ def test_the_site_shows_the_title_or_the_folder_s_name(
     assert record["title"] == (shown or "Main street")
 
 
+def test_a_manifest_that_was_mended_by_hand_is_built_and_written_anew(
+    city: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(city.parent / "models", tmp_path / "models")
+    other = tmp_path / "city"
+    shutil.copytree(city, other)
+    text = (other / manifest.CSV).read_text()
+    (other / manifest.CSV).write_text(text.replace("Elm Street", "Oak Street"))
+    assert manifest.read(Store(str(other))).mended
+    built(other)
+    assert not manifest.read(Store(str(other))).mended
+    (block, _) = json.loads((other / "site/site.json").read_text())["blocks"]
+    assert {one["street"] for one in block["buildings"]} == {"Oak Street"}
+
+
 def test_clock_times_stand_in_one_file_alone(city: Path) -> None:
     run = (city / "CURRENT").read_text().strip()
     told = json.loads((city / "runs" / run / "run.json").read_text())
