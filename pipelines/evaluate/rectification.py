@@ -91,7 +91,9 @@ def evaluate(
             holding(sets, block) if "labels" in parts else [], drawn, block, keep=keep
         )
     if "table2" in parts:
-        report["table2"] = search_space.evaluate([one / "photos" for one in sets])
+        report["table2"] = {
+            one.name: search_space.evaluate(one / "photos") for one in sets
+        }
     return report
 
 

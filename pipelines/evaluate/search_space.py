@@ -24,7 +24,7 @@ from pipelines.evaluate import Unmeasurable
 SHORT_SIDE_PX = 2048
 LONGEST = 150  # strict lines; pairs grow with the square
 FAR = 20.0  # focal lengths: beyond, a point counts as infinite
-MOST = 12  # photographs
+MOST = 10  # photographs of a set
 KINDS: Final = {
     "collinear lines": (True, False),
     "infinite points": (False, True),
@@ -98,28 +98,26 @@ def apart_deg(one: np.ndarray, other: np.ndarray) -> float:
     )
 
 
-def chosen(folders: list[Path], *, most: int = MOST) -> list[Path]:
-    """Choose photographs, evenly over the names in each folder and over the folders.
+def chosen(folder: Path, *, most: int = MOST) -> list[Path]:
+    """Choose a folder's photographs evenly over their names.
 
     Raises:
         Unmeasurable: if there is no JPEG.
     """
-    each = [sorted(folder.glob("*.jpg")) for folder in folders]
-    each = [files for files in each if files]
-    if not each:
-        raise Unmeasurable(f"no *.jpg in {', '.join(str(one) for one in folders)}")
-    share = max(1, most // len(each))
-    return [file for files in each for file in files[:: -(-len(files) // share)]][:most]
+    files = sorted(folder.glob("*.jpg"))
+    if not files:
+        raise Unmeasurable(f"no *.jpg in {folder}")
+    return files[:: -(-len(files) // most)]
 
 
-def evaluate(folders: list[Path], *, most: int = MOST) -> dict[str, Any]:
-    """Sum up table 2 over photographs.
+def evaluate(folder: Path, *, most: int = MOST) -> dict[str, Any]:
+    """Sum up table 2 over photographs of a folder.
 
     Raises:
         Unmeasurable: if there is no photograph, or one that can't be read.
     """
     each = []
-    for file in chosen(folders, most=most):
+    for file in chosen(folder, most=most):
         image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
         if image is None:
             raise Unmeasurable(f"{file} is no image: take it out of the folder")

@@ -210,15 +210,25 @@ def test_refining_finds_where_lines_meet_and_keeps_it() -> None:
 
 
 def test_photographs_are_chosen_evenly(tmp_path: Path) -> None:
-    for folder, count in (("a", 40), ("b", 9)):
-        (tmp_path / folder).mkdir()
-        for i in range(count):
-            (tmp_path / folder / f"{i:02d}.jpg").touch()
-    files = search_space.chosen([tmp_path / "a", tmp_path / "b"], most=8)
-    names = [f"{one.parent.name}{one.stem}" for one in files]
-    assert names == ["a00", "a10", "a20", "a30", "b00", "b03", "b06"]
+    for i in range(40):
+        (tmp_path / f"{i:02d}.jpg").touch()
+    names = [file.stem for file in search_space.chosen(tmp_path, most=6)]
+    assert names == ["00", "07", "14", "21", "28", "35"]
     with pytest.raises(ValueError, match="jpg"):
-        search_space.chosen([tmp_path])
+        search_space.chosen(tmp_path / "empty")
+
+
+def test_table_2_sums_up_and_stands_beside_the_papers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(search_space, "SHORT_SIDE_PX", 450)
+    folder = labelled_folder(tmp_path / "taxphotos")
+    table = search_space.evaluate(folder / "photos")
+    assert table["photographs"] == 1
+    assert table["both"]["space_percent_sd"] == 0
+    text = "\n".join(rectification_table.table_2({"taxphotos": table}))
+    assert "taxphotos, 1 photos" in text
+    assert "44.3 +- 18.7" in text
 
 
 @pytest.mark.skipif(
