@@ -23,6 +23,7 @@ TileKey = tuple[str, int, int | None]  # photo key, facade, evidence of the whol
 LIMIT_PX = 4096  # what every GPU of the last ten years takes
 GUTTER_PX = 8  # keeps tiles apart down to the third mipmap
 LONGEST_PX = 1024  # a storey of 3.5 m keeps 60 texels or more in a ten-storey front
+LEAST_PX = 4  # of a tile's side
 PATCH_PX = 16
 TONES = (64, 84, 104, 124, 144)  # of plain walls and roofs, dark to light
 
@@ -120,7 +121,7 @@ def scaled_sizes(
     """Scale sizes (h, w), none beyond a longest side, none below four texels."""
     factors = [min(scale, longest_px * scale / max(size), 1.0) for size in sizes]
     return [
-        (max(4, round(h * f)), max(4, round(w * f)))
+        (max(LEAST_PX, round(h * f)), max(LEAST_PX, round(w * f)))
         for (h, w), f in zip(sizes, factors, strict=True)
     ]
 
@@ -132,6 +133,9 @@ def layout(
 
     Where even the widest atlas is too small, all tiles shrink by the same factor, a
     step of a tenth at a time. Returns the boxes of the tiles and the atlas's (h, w).
+
+    Raises:
+        ValueError: if not even tiles of four texels fit.
     """
     scale = 1.0
     while True:
@@ -153,6 +157,8 @@ def layout(
                     ]
                     return boxes, (-(-height // 64) * 64, width)
             width *= 2
+        if max(map(max, inner)) <= LEAST_PX:
+            raise ValueError(f"{len(sizes)} tiles fit no atlas of {limit_px} px")
         scale *= 0.9
 
 

@@ -48,6 +48,8 @@ def block(
     Raises:
         ValueError: if there are no fronts.
     """
+    if not fronts:
+        raise ValueError(f"block {name!r} has no fronts")
     shown = elevations(assignments, aspects)
     fronts = with_seen_widths(fronts, shown)
     numbers = sorted({front.ring for front in fronts})

@@ -50,7 +50,8 @@ def glb(
     uint8. `extras` (provenance) goes to `asset.extras`.
 
     Raises:
-        ValueError: if a column of the table has not one row a building.
+        ValueError: if a column of the table has not one row a building, or another
+            type.
     """
     _check(table, len(buildings))
     buffer = Buffer()
@@ -83,6 +84,10 @@ def _check(table: Mapping[str, Column], buildings: int) -> None:
         if len(values) != buildings:
             raise ValueError(
                 f"column {column!r}: {len(values)} rows, {buildings} buildings"
+            )
+        if isinstance(values, np.ndarray) and values.dtype.name not in COMPONENTS:
+            raise ValueError(
+                f"column {column!r}: {values.dtype.name}, not {', '.join(COMPONENTS)}"
             )
 
 

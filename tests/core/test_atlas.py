@@ -121,3 +121,11 @@ def test_the_order_of_tiles_in_the_input_changes_nothing() -> None:
 def test_a_tile_too_wide_for_a_shelf_is_refused() -> None:
     with pytest.raises(ValueError, match="does not fit"):
         atlas.shelves([(10, 300)], width=256)
+
+
+def test_tiles_that_fit_no_atlas_are_refused_and_not_shrunk_for_ever() -> None:
+    with pytest.raises(ValueError, match="100 tiles fit no atlas of 128 px"):
+        atlas.layout([(50, 50)] * 100, longest_px=50, limit_px=128)
+    boxes, (height, width) = atlas.layout([(50, 50)] * 100, longest_px=50, limit_px=256)
+    assert max(height, width) <= 256
+    assert len(boxes) == 100

@@ -132,3 +132,8 @@ def test_bounds_hold_every_building() -> None:
         assert (one.footprint_m >= np.array(low[:2])).all()
         assert (one.footprint_m <= np.array(high[:2])).all()
         assert low[2] == 0 < one.height_m <= high[2]
+
+
+def test_a_block_without_fronts_is_a_mistake() -> None:
+    with pytest.raises(ValueError, match="'9' has no fronts"):
+        block.block("9", [], [], {})

@@ -194,3 +194,10 @@ def test_a_short_column_is_refused() -> None:
     blank = Picture(b"x", "image/png")
     with pytest.raises(ValueError, match="'lot'"):
         gltf.glb("1", [], colours=blank, evidence=blank, table={"lot": ["1"]})
+
+
+def test_a_column_of_another_type_is_refused() -> None:
+    blank = Picture(b"x", "image/png")
+    table = {"height": np.zeros(0, np.float64)}
+    with pytest.raises(ValueError, match="'height': float64"):
+        gltf.glb("1", [], colours=blank, evidence=blank, table=table)
