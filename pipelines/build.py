@@ -3,6 +3,7 @@
 import json
 import time
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,9 +11,10 @@ import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions
 from apache_beam.runners.runner import PipelineResult
 
+from nostalgin_core.records import Rejection
 from pipelines import manifest, runs
 from pipelines.city import Built, city
-from pipelines.manifest import Manifest
+from pipelines.manifest import Manifest, Unusable
 from pipelines.models import Models
 from pipelines.options import CityOptions, part
 from pipelines.plan import Plan, plan
@@ -61,7 +63,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     """Build what the manifest asks for, check that nothing was lost, and publish.
 
     Raises:
-        Unusable: if the manifest can't be read.
+        Unusable: if the manifest can't be read, or names no front.
         Lost: if a runner lost work.
     """
     ours = options.view_as(CityOptions)
@@ -75,6 +77,8 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
         models.read(network)  # a spoiled file is told here, not by every photo
     bench = Bench(store, versions(models), models)
     todo = plan(found.rows, city=ours.city, shard=shard)
+    if shard == (1, 1) and not todo.blocks:
+        raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     run = runs.run_id(found.sha256, bench.versions, ours.shard)
     voice.say(
         "start",
@@ -92,6 +96,13 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
     if shard == (1, 1):
         publish(store, run, bench.versions, found.rows, title=found.title)
     return report
+
+
+def nothing(store: Store, rejections: Sequence[Rejection]) -> str:
+    """Say that there is nothing to build, and what is wrong with the first row."""
+    told = [f"{one.key}: {one.reason}: {one.detail}" for one in rejections[:1]]
+    why = "".join(told) or "it has no rows"
+    return f"{store.root}/{manifest.CSV} names no front to build: {why}"
 
 
 def launched(

@@ -85,6 +85,22 @@ def test_an_address_that_no_file_system_answers_to_is_named(
     assert "Traceback" not in result.output
 
 
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [("", "it has no rows"), ("a.jpg,9-1-0,9,1,wide\n", "row 2: nonsense cell")],
+)
+def test_a_manifest_that_names_nothing_to_build_says_why(
+    row: str, words: str, tmp_path: Path
+) -> None:
+    text = "photo,front_id,block,lot,width_m\n" + row
+    (tmp_path / "manifest.csv").write_text(text)
+    result = nostalgin("build", tmp_path)
+    assert result.exit_code == 1
+    assert "names no front to build" in result.output
+    assert words in result.output
+    assert not (tmp_path / "CURRENT").exists()
+
+
 def test_a_demo_that_can_not_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     result = nostalgin("demo", "-o", tmp_path / "file" / "city", "--no-browser")
