@@ -45,7 +45,8 @@ def models(
 ) -> list[site.BlockModel]:
     """Gather the blocks' models, in the order of their numbers."""
     why = reasons(runs.read_table(store, run, "rejections"), rows)
-    taken = of_buildings(runs.read_table(store, run, "photos"), rows)
+    photos = runs.read_table(store, run, "photos")
+    taken, whose = of_buildings(photos, rows), credits_of(photos, rows)
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
     records = [json.loads(row["record"]) for row in ordered]
     moves = places(records, rows)
@@ -54,6 +55,8 @@ def models(
         move = moves[row["block"]]
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
+            for photo in building["photos"]:  # it says whose the block's photos are
+                photo["credit"] = whose.get(photo["key"], photo.get("credit", ""))
             shown = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo
@@ -104,6 +107,14 @@ def of_buildings(
             building = f"{row.front.block}-{row.front.lot}"
             told[building][row.photo] = photo | {"credit": row.credit}
     return {building: list(own.values()) for building, own in told.items()}
+
+
+def credits_of(photos: list[dict[str, Any]], rows: Sequence[Row]) -> dict[str, str]:
+    """Tell whom each photo is credited to, by its key."""
+    credit: dict[str, str] = {}
+    for row in rows:
+        credit.setdefault(row.photo, row.credit)
+    return {row["key"]: credit[row["name"]] for row in photos if row["name"] in credit}
 
 
 def reasons(

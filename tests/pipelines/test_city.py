@@ -4,6 +4,7 @@ import hashlib
 import json
 import shutil
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -146,6 +147,22 @@ def test_the_site_shows_the_title_or_the_folder_s_name(
     publish(store, run, versions(models), rows, title=title)
     record = json.loads((other / "site" / "site.json").read_text())
     assert record["title"] == (shown or "Main street")
+
+
+def test_each_photo_is_credited_to_whom_its_own_row_names(
+    city: Path, tmp_path: Path
+) -> None:
+    other = tmp_path / "city"
+    shutil.copytree(city, other)
+    store = Store(str(other))
+    rows = manifest.read(store).rows
+    rows = [replace(row, credit=f"Archive of {row.photo}") for row in rows]
+    run = (other / "CURRENT").read_text().strip()
+    publish(store, run, versions(Models(str(city.parent / "models"))), rows)
+    record = json.loads((other / "site" / "site.json").read_text())
+    photos = [p for b in record["blocks"] for h in b["buildings"] for p in h["photos"]]
+    assert len(photos) >= 4
+    assert all(one["credit"] == f"Archive of {one['caption']}" for one in photos)
 
 
 def test_a_manifest_that_was_mended_by_hand_is_built_and_written_anew(
