@@ -22,7 +22,7 @@ from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
     "segment": 4,
-    "matte": 3,
+    "matte": 4,
     "rectify": 2,
     "inpaint": 2,
     "block": 1,

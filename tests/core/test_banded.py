@@ -46,4 +46,5 @@ def test_bands_that_all_but_touch_are_numbered_together() -> None:
     unknown[:, 10:16] = unknown[:, 17:23] = True
     filled = unknown.copy()
     filled[:, 16] = True
+    assert banded.order(unknown).reach < banded.WIDEST
     assert banded.order(unknown).reach <= banded.order(filled).reach
