@@ -28,31 +28,10 @@ class Order(NamedTuple):
 
 
 def order(unknown: Mask) -> Order:
-    """Number the unknowns along their bands, so that neighbours have near numbers.
-
-    Unknowns two apart are coupled, too, across a known pixel. That matters only where
-    bands all but touch, so the smaller graph of pixels side by side is tried first.
-    """
+    """Number the unknowns along their bands, so that neighbours have near numbers."""
     pixels, number = numbered(unknown)
     width = unknown.shape[1] + 2 * PAD
-    ranks = _along(pixels, number, width, apart=1)
-    reach = _reach(pixels, number, width, ranks)
-    if reach >= WIDEST:
-        ranks = _along(pixels, number, width, apart=2)
-        reach = _reach(pixels, number, width, ranks)
-    return Order(ranks, reach)
-
-
-def _along(
-    pixels: Int[np.ndarray, " n"],
-    number: Int[np.ndarray, " padded"],
-    width: int,
-    *,
-    apart: int,
-) -> Int[np.ndarray, " n"]:
-    """Rank the unknowns by reverse Cuthill-McKee, taking as neighbours what is near."""
-    near = range(-apart, apart + 1)
-    steps = [dy * width + dx for dy in near for dx in near]
+    steps = [dy * width + dx for dy in range(-2, 3) for dx in range(-2, 3)]
     neighbours = np.stack([number[pixels + step] for step in steps], axis=1)
     present = neighbours >= 0
     starts = np.concatenate([[0], np.cumsum(present.sum(axis=1))]).astype(np.int32)
@@ -64,23 +43,13 @@ def _along(
     if len(pixels):
         along = csgraph.reverse_cuthill_mckee(graph, symmetric_mode=True)
         ranks[along] = np.arange(len(pixels))
-    return ranks
-
-
-def _reach(
-    pixels: Int[np.ndarray, " n"],
-    number: Int[np.ndarray, " padded"],
-    width: int,
-    ranks: Int[np.ndarray, " n"],
-) -> int:
-    """Return the greatest difference of rank between coupled unknowns."""
     reach = 0
     for dy, dx in LATER:
         there = number[pixels + (dy * width + dx)]
         both = there >= 0
         spread = np.abs(ranks[both] - ranks[there[both]])
         reach = max(reach, int(spread.max(initial=0)))
-    return reach
+    return Order(ranks, reach)
 
 
 def solve(equations: System, numbering: Order) -> Float[np.ndarray, " n"]:
