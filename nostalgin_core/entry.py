@@ -42,7 +42,7 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         ValueError: "reason: remedy", if it can't be used.
     """
     photo = cells.get("photo", "")
-    if _leads_out(photo):
+    if not inside(photo):
         raise ValueError(
             f"path outside the photo folder: {photo!r}; write a path inside it"
         )
@@ -126,7 +126,8 @@ def _trimmed(number: str) -> str:
     return number.lstrip("0") if number.strip("0") and number.isdecimal() else number
 
 
-def _leads_out(photo: str) -> bool:
+def inside(photo: str) -> bool:
+    """Tell whether a path stays within the folder it is relative to."""
     path = PurePosixPath(photo.replace("\\", "/"))
     drive = len(photo) > 1 and photo[1] == ":"
-    return path.is_absolute() or drive or ".." in path.parts or "\0" in photo
+    return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)

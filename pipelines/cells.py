@@ -3,7 +3,6 @@
 A cell that makes no sense is an error that names its column and quotes what is written.
 """
 
-from pathlib import PurePosixPath
 from typing import Any, Final
 
 from nostalgin_core.records import Front
@@ -14,13 +13,6 @@ MOST_SIDES, MOST_FRONTS = 99, 9999  # of a ring; no block has more
 LEAST_M, MOST_M = 1.0, 400.0  # of a front's width or depth
 YES: Final = ("true", "1", "yes")
 NO: Final = ("false", "0", "no", "")
-
-
-def inside(photo: str) -> bool:
-    """Tell whether a path stays within the folder it is relative to."""
-    path = PurePosixPath(photo.replace("\\", "/"))
-    drive = len(photo) > 1 and photo[1] == ":"
-    return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)
 
 
 def text(cells: dict[str, Any], name: str) -> str:

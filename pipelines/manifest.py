@@ -15,9 +15,10 @@ from typing import Any, Final
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from nostalgin_core.entry import inside
 from nostalgin_core.records import Front, Rejection
 from pipelines import tables
-from pipelines.cells import front_from, inside, text
+from pipelines.cells import front_from, text
 from pipelines.store import Store, parquet_bytes
 
 PARQUET: Final = "manifest.parquet"

@@ -14,6 +14,7 @@ from nostalgin_core.records import (
     Seen,
     Wall,
 )
+from nostalgin_core.settle import address
 
 Json = dict[str, Any]
 CENTIMETRE: Final = 2  # digits
@@ -74,7 +75,7 @@ def _building(
     return {
         "id": building.building_id,
         "lot": own[0].lot if own else building.building_id,
-        "address": "; ".join(_address(front) for front in own),
+        "address": "; ".join(address(front) for front in own),
         "street": ", ".join(
             dict.fromkeys(front.street for front in own if front.street)
         ),
@@ -95,10 +96,6 @@ def _building(
 
 def _fronts(building: Building) -> list[Wall]:
     return [wall for wall in building.walls if wall.front_id is not None]
-
-
-def _address(front: Front) -> str:
-    return f"{front.address} {front.street}".strip()
 
 
 def _width(wall: Wall) -> float:

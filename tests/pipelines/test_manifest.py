@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from nostalgin_core.entry import inside
 from nostalgin_core.records import Front
 from pipelines import cells, manifest
 from pipelines.manifest import Unusable
@@ -110,12 +111,12 @@ def test_unknown_columns_are_kept_with_a_warning(store: Store) -> None:
     ["../a.jpg", "b/../../a.jpg", "/etc/a.jpg", "C:\\a.jpg", "..\\a.jpg", "a\0.jpg"],
 )
 def test_a_path_that_leads_outside_is_inside_nothing(path: str) -> None:
-    assert not cells.inside(path)
+    assert not inside(path)
 
 
 @pytest.mark.parametrize("path", ["a.jpg", "b/a.jpg", "b/..a.jpg", "a..b.jpg", ""])
 def test_a_path_below_is_inside(path: str) -> None:
-    assert cells.inside(path)
+    assert inside(path)
 
 
 @pytest.mark.parametrize(
