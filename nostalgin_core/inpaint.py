@@ -30,7 +30,7 @@ SmallerMask = Bool[np.ndarray, "h2 w2"]
 
 MULTIPLE = 8  # the network's sizes
 GUESSED_PX = 2_000_000  # larger images are guessed at this size, to bound the memory
-LOOKED_PX = 160_000  # and the network looks at them at this one: fronts it learnt on
+LOOKED_PX = 160_000  # and the network looks at them at this one, as it learnt
 HALO_PX = 8  # a soft edge this near the hole is mixed with what hides the front
 
 

@@ -25,7 +25,7 @@ from nostalgin_core.resemblance import (
     resemblance,
 )
 from nostalgin_core.slices import grown
-from nostalgin_core.smooth import Half, Values, fill
+from nostalgin_core.smooth import Half, Values, fill, flow
 
 HalfMask = Bool[np.ndarray, "h2 w2"]
 Window = Float32[np.ndarray, "h3 w3"]
@@ -173,12 +173,12 @@ def copy(values: Values, known: Mask, within: Box) -> tuple[Half, Half]:
 
 
 def guess(values: Values, hole: Mask) -> Values:
-    """Fill a hole with what repeats, and with a membrane where nothing does.
+    """Fill a hole with what repeats, and smoothly where nothing does.
 
     What the copies miss of the known texels, mostly shade, is carried into the hole by
     a membrane of its own.
     """
-    made = fill(values, hole)
+    made = flow(values, hole)
     if not hole.any():
         return made
     rows, columns = (np.flatnonzero(hole.any(axis=a)) for a in (1, 0))

@@ -23,8 +23,8 @@ from pipelines.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 4,
     "matte": 4,
-    "rectify": 2,
-    "inpaint": 2,
+    "rectify": 3,
+    "inpaint": 3,
     "block": 1,
     "thumbnail": 1,
 }

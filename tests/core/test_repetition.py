@@ -5,7 +5,7 @@ import pytest
 from nostalgin_core.records import Box
 from nostalgin_core.repetition import agreements, guess, shifted
 from nostalgin_core.resemblance import resemblance
-from nostalgin_core.smooth import fill
+from nostalgin_core.smooth import fill, flow
 
 
 def front(h: int, w: int, *, axis: int, floor: int) -> np.ndarray:
@@ -135,3 +135,14 @@ def test_judging_a_box_alone_judges_it_as_the_whole_front_would() -> None:
     for few, many in zip(part, whole, strict=True):
         for a, b in zip(few, many, strict=True):
             assert np.allclose(a, b[90:160, 40:100], atol=1e-3)
+
+
+def test_a_smooth_fill_carries_an_edge_on_and_keeps_what_is_known() -> None:
+    image = np.full((60, 80), 60, np.float32)
+    image[:, 40:] = 180
+    hole = np.zeros(image.shape, bool)
+    hole[22:38, 30:50] = True
+    made = flow(np.where(hole, 0, image).astype(np.float32), hole)
+    assert (made[~hole] == image[~hole]).all()
+    off = [np.abs(a - image)[hole].mean() for a in (made, fill(image, hole))]
+    assert off[0] < 0.95 * off[1]
