@@ -29,6 +29,8 @@ DELTA = 1e-6  # for differences; everything here is of the order of one
 TIE_DEG = 4.0  # fronts this near to parallel or square are taken to be so,
 TIE_SD_DEG = 1.0  # to within this
 TOGETHER = 4.0  # lines to one independent measurement
+LEAST_SPREAD = 0.01  # the variance of lines over the assumed: no edge is perfect
+LEAST_CERTAIN = 1e-3  # 1 / rad^2 of an azimuth of which nothing is known
 GATES_DEG = (5.0, 3.0, 2.0, 1.5)  # a line beyond has no say, round by round
 
 
@@ -126,45 +128,69 @@ def fit(
     Within a round, Gauss-Newton steps with Cauchy's weights. A line's direction is
     known to END_SD over half its length, plus BENT_SD.
 
+    The covariance is the inverse of the normal matrix, with the lines' part scaled by
+    how far they really scatter (`spread`). Lines err together (one sill, one cornice),
+    so only every `TOGETHER`th counts as independent.
+    """
+    sd = np.hypot(END_SD_PX / np.maximum(length_px / 2, 1.0), np.radians(BENT_SD_DEG))
+    p = parameters.copy()
+    for gate in GATES_DEG:
+        axis, missed = nearest(p, lines, open_to)
+        near = missed < np.sin(np.radians(gate))
+        chosen = lines[near], axis[near], sd[near], omega[near]
+        for _ in range(STEPS):
+            told, gradient = _told(p, *chosen)
+            assumed, pull = _assumed(p, focal_sd)
+            step = np.linalg.solve(told + assumed, gradient + pull)
+            p = p - np.clip(step, -0.2, 0.2)
+    support = np.bincount(axis[near], omega[near], minlength=len(p) - 2)
+    _, missed = nearest(p, lines, open_to)
+    scatter = spread(missed, sd, omega)
+    covariance = np.linalg.inv(told / (TOGETHER * scatter) + assumed)
+    return Upright(p, covariance, support.astype(np.float64))
+
+
+def nearest(
+    parameters: Float[np.ndarray, " p"], lines: Lines, open_to: Bool[np.ndarray, "n k"]
+) -> tuple[Int[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """Give the axis that each line misses least, of those it is open to, and the sine.
+
+    A line that is open to none misses by infinity.
+    """
+    missed = np.abs(sines_to_all(parameters, lines))
+    missed[~open_to] = np.inf
+    return missed.argmin(axis=1), missed.min(axis=1)
+
+
+def _told(
+    parameters: Float[np.ndarray, " p"],
+    lines: Lines,
+    axis: Int[np.ndarray, " n"],
+    sd: Float[np.ndarray, " n"],
+    omega: Float[np.ndarray, " n"],
+) -> tuple[Float[np.ndarray, "p p"], Float[np.ndarray, " p"]]:
+    """Sum up what lines tell: their normal matrix and the gradient of their misfit."""
+    r = sines(parameters, lines, axis)
+    jacobian = slopes(parameters, lines, axis, r)
+    weight = omega / sd**2 / (1 + (r / (2 * sd)) ** 2)
+    return jacobian.T @ (jacobian * weight[:, None]), jacobian.T @ (weight * r)
+
+
+def _assumed(
+    parameters: Float[np.ndarray, " p"], focal_sd: float
+) -> tuple[Float[np.ndarray, "p p"], Float[np.ndarray, " p"]]:
+    """Sum up what is known before: the priors' normal matrix and gradient.
+
     Fronts within `TIE_DEG` of parallel or of a right angle are pulled there by a weak
     prior: streets are straight and most corners square, and where they aren't, the
     fronts' own lines say so.
-
-    The covariance is the inverse of the normal matrix, scaled by the residuals' own
-    spread, which in a photo of clean edges is smaller than assumed. Lines err together
-    (one sill, one cornice), so only every `TOGETHER`th counts as independent.
     """
-    sd = np.hypot(END_SD_PX / np.maximum(length_px / 2, 1.0), np.radians(BENT_SD_DEG))
-    prior_mean = np.array([LOG_FOCAL[0], ROLL_RAD[0], TILT_RAD[0]])
-    prior_sd = np.array([focal_sd, ROLL_RAD[1], TILT_RAD[1]])
-    p = parameters.copy()
-    fronts = len(p) - 3
-    for gate in GATES_DEG:
-        missed = np.abs(sines_to_all(p, lines))
-        missed[~open_to] = np.inf
-        axis = missed.argmin(axis=1)
-        near = missed.min(axis=1) < np.sin(np.radians(gate))
-        chosen, axis_in = lines[near], axis[near]
-        sd_in, omega_in = sd[near], omega[near]
-        for _ in range(STEPS):
-            r = sines(p, chosen, axis_in)
-            jacobian = slopes(p, chosen, axis_in, r)
-            weight = omega_in / sd_in**2 / (1 + (r / (2 * sd_in)) ** 2)
-            normal = jacobian.T @ (jacobian * weight[:, None])
-            gradient = jacobian.T @ (weight * r)
-            spread = _spread(r, sd_in, omega_in)
-            tie_normal, tie_gradient = _ties(p[3:])
-            normal[3:, 3:] += tie_normal
-            gradient[3:] += tie_gradient
-            normal[[0, 1, 2], [0, 1, 2]] += 1 / prior_sd**2
-            gradient[:3] += (p[:3] - prior_mean) / prior_sd**2
-            normal[range(3, 3 + fronts), range(3, 3 + fronts)] += 1e-3
-            p = p - np.clip(np.linalg.solve(normal, gradient), -0.2, 0.2)
-    support = np.bincount(axis_in, omega_in, minlength=fronts + 1).astype(np.float64)
-    independent = normal.copy()
-    scaled = jacobian.T @ (jacobian * weight[:, None])
-    independent += scaled * (1 / (TOGETHER * spread) - 1)
-    return Upright(p, np.linalg.inv(independent), support)
+    mean = np.array([LOG_FOCAL[0], ROLL_RAD[0], TILT_RAD[0]])
+    certain = np.array([focal_sd, ROLL_RAD[1], TILT_RAD[1]]) ** -2.0
+    ties, pull = _ties(parameters[3:])
+    normal = np.diag([*certain, *np.full(len(pull), LEAST_CERTAIN)])
+    normal[3:, 3:] += ties
+    return normal, np.concatenate([(parameters[:3] - mean) * certain, pull])
 
 
 def slopes(
@@ -201,17 +227,25 @@ def sines_to_all(
     return np.column_stack(each)
 
 
-def _spread(
-    r: Float[np.ndarray, " n"],
+def spread(
+    missed: Float[np.ndarray, " n"],
     sd: Float[np.ndarray, " n"],
     omega: Float[np.ndarray, " n"],
 ) -> float:
-    """Measure the residuals' variance over the assumed one, robustly; at least 0.1."""
-    if omega.sum() < 1:
+    """Measure the lines' variance over the assumed one, by their median miss.
+
+    A normal variable's size has the median 0.6745 sd. All lines within the first gate
+    count: those within the last are near by choice and would scatter little in any
+    photo. Clean edges scatter less than assumed, a blurred photo's more.
+    """
+    near = missed < np.sin(np.radians(GATES_DEG[0]))
+    if omega[near].sum() < 1:
         return 1.0
-    square = (r / sd) ** 2
-    weight = omega / (1 + square / 4)
-    return max(float(weight @ square / weight.sum()), 0.1)
+    size = missed[near] / sd[near]
+    order = np.argsort(size, kind="stable")
+    total = np.cumsum(omega[near][order])
+    median = size[order][np.searchsorted(total, total[-1] / 2)]
+    return max(float(median / 0.6745) ** 2, LEAST_SPREAD)
 
 
 def _ties(

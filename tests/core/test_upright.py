@@ -108,3 +108,41 @@ def test_without_lines_the_prior_is_all_that_is_known() -> None:
     )
     assert world.support.tolist() == [0.0, 0.0]
     assert np.sqrt(world.covariance[0, 0]) == pytest.approx(upright.LOG_FOCAL[1])
+
+
+@pytest.mark.parametrize("factor", [0.2, 0.5, 1.0])
+def test_the_spread_is_the_lines_variance_over_the_assumed(factor: float) -> None:
+    rng = np.random.default_rng(4)
+    sd = rng.uniform(0.006, 0.012, 4000)
+    missed = np.abs(rng.normal(0, factor * sd))
+    ones = np.ones(4000)
+    assert upright.spread(missed, sd, ones) == pytest.approx(factor**2, rel=0.1)
+
+
+def test_strays_beyond_the_first_gate_do_not_widen_the_spread() -> None:
+    rng = np.random.default_rng(5)
+    sd, ones = np.full(300, 0.01), np.ones(300)
+    missed = np.abs(rng.normal(0, sd))
+    strayed = np.concatenate([missed, np.full(300, 0.2)])
+    twice = np.concatenate([sd, sd]), np.concatenate([ones, ones])
+    assert upright.spread(strayed, *twice) == upright.spread(missed, sd, ones)
+
+
+def test_without_lines_the_assumed_variance_holds() -> None:
+    nothing = np.empty(0)
+    assert upright.spread(nothing, nothing, nothing) == 1.0
+
+
+def test_a_line_belongs_to_the_axis_that_it_misses_least_and_is_open_to() -> None:
+    true = np.array([0.1, 0.01, 0.25, -0.5, 0.9])
+    lines = np.vstack([lines_of(true, a, 5, seed=a) for a in range(3)])
+    every = np.ones((15, 3), bool)
+    axis, missed = upright.nearest(true, lines, every)
+    np.testing.assert_array_equal(axis, np.repeat([0, 1, 2], 5))
+    np.testing.assert_allclose(missed, 0, atol=1e-9)
+    closed = every.copy()
+    closed[0] = False
+    closed[5:10, 1] = False
+    axis, missed = upright.nearest(true, lines, closed)
+    assert missed[0] == np.inf
+    assert not np.any(axis[5:10] == 1)
