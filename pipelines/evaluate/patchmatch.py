@@ -31,7 +31,7 @@ def patchmatch(image: Gray, hole: Mask, *, radius: int = RADIUS_PX) -> Gray:
     """
     if not available():
         raise Unmeasurable(
-            "PatchMatch needs a library: pip install pypatchmatch, or leave it out "
+            "PatchMatch needs a library: pip install nostalgin[compare], or leave it out "
             "of --methods"
         )
     library = import_module(PACKAGE)
