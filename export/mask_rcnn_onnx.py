@@ -22,7 +22,7 @@ from jaxtyping import Float32
 import nostalgin_core
 from export.mask_rcnn import MaskRCNN, load_weights
 from export.shipping import SMALLEST_HALVED, lock, shipped
-from export.weights import read_weights
+from export.weights import mean_weights
 from nostalgin_core import session
 from nostalgin_core.segment import prepared
 
@@ -93,11 +93,13 @@ def open_shipped() -> session.Session:
 def main() -> None:
     """Export, prove parity on labelled photographs, write the file and its lock."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--weights", type=Path, required=True, help=".npz or .pt")
+    parser.add_argument(
+        "--weights", nargs="+", required=True, help=".npz, .onnx or .pt; their mean"
+    )
     parser.add_argument("--photos", type=Path, nargs="+", required=True)
     parser.add_argument("--into", type=Path, required=True)
     args = parser.parse_args()
-    network = rounded(load_weights(MaskRCNN(), read_weights(args.weights)))
+    network = rounded(load_weights(MaskRCNN(), mean_weights(args.weights)))
     images = [_image(path) for path in args.photos]
     model = export(network, images[0])
     worst = disparity(network, model, images)

@@ -4,6 +4,7 @@ Training goes on from the shipped ONNX file: it keeps the names of `state_dict`,
 other copy of the weights is needed.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,32 @@ def read_weights(path: Path) -> dict[str, np.ndarray]:
         return weights_of(onnx.load(str(path)))
     with np.load(path) as arrays:
         return {name: arrays[name] for name in arrays.files}
+
+
+def mean_weights(parts: Sequence[str]) -> dict[str, np.ndarray]:
+    """Mix networks that went on from one start: the mean of their weights.
+
+    A part is a path, or a path with its share behind an `@`, as in `segment.onnx@3`.
+    Wortsman et al., "Model soups", ICML 2022: the mean of several runs' or steps'
+    weights tends to do better than each, at no cost in use.
+
+    Raises:
+        ValueError: if a share is no positive number.
+    """
+    shares, networks = [], []
+    for part in parts:
+        path, at, share = part.partition("@")
+        shares.append(float(share) if at else 1.0)
+        networks.append(read_weights(Path(path)))
+    if min(shares) <= 0:
+        raise ValueError(f"shares must be positive: {shares}")
+    odds = np.array(shares) / sum(shares)
+
+    def mixed(name: str) -> np.ndarray:
+        arrays = [network[name].astype(np.float64) for network in networks]
+        return np.einsum("n,n...->...", odds, np.stack(arrays)).astype(np.float32)
+
+    return {name: mixed(name) for name in networks[0]}
 
 
 def weights_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
