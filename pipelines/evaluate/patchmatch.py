@@ -31,8 +31,8 @@ def patchmatch(image: Gray, hole: Mask, *, radius: int = RADIUS_PX) -> Gray:
     """
     if not available():
         raise Unmeasurable(
-            "PatchMatch needs a library: pip install nostalgin[compare], or leave it out "
-            "of --methods"
+            "PatchMatch needs a library: pip install nostalgin[compare], or leave it "
+            "out of --methods"
         )
     library = import_module(PACKAGE)
     library.set_random_seed(0)

@@ -134,7 +134,7 @@ def test_patchmatch_names_its_library_where_it_is_missing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(patchmatch, "available", lambda: False)
-    with pytest.raises(Unmeasurable, match="pip install nostalgin.compare"):
+    with pytest.raises(Unmeasurable, match="pip install nostalgin"):
         patchmatch.patchmatch(np.zeros((9, 9), np.uint8), np.ones((9, 9), bool))
 
 
