@@ -4,6 +4,8 @@ Lines, vanishing points, camera, quad, aspect ratio, homography, warp: section 3
 fronts of a photo share the camera and the way up (`orient`, `upright`).
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from jaxtyping import Float
 
@@ -25,6 +27,9 @@ LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
 MOST_SKEWED = 1e9  # condition of a plane seen edge on
 ASPECTS = (0.05, 20.0)
 MOST_UNSURE_DEG = 10.0  # of the horizontal vanishing point: beyond, it is a guess
+MOST_LEANING_DEG = 4.0  # of a side, in 95 of 100 cases: beyond, it isn't straightened
+WITHIN = 1.96  # standard deviations: 95 of 100 cases
+STEP = 1e-4  # of a parameter, for differences
 MOST_BEYOND = 0.7  # of an elevation outside the frame
 TOLD = 0.8  # the lines tell the focal length if they shrink the prior's spread to this
 
@@ -78,8 +83,9 @@ def elevation(
     if bounded is None:
         return _rejected(photo, facade, "quad degenerate")
     aspect, corners = bounded
-    if not ASPECTS[0] <= aspect <= ASPECTS[1]:
-        return _rejected(photo, facade, "aspect implausible", f"{aspect:.3g}")
+    implausible = _implausible(photo, world, rank, corners, aspect)
+    if implausible is not None:
+        return _rejected(photo, facade, *implausible)
     shape = warp.size(corners, aspect)
     photo_from_elevation = warp.photo_from_elevation(corners, shape)
     image, alpha, rests_on = warp.elevate(
@@ -113,6 +119,18 @@ def elevation(
         aspect_sd=_aspect_sd(photo, world, rank, corners, aspect),
         method=method,
     )
+
+
+def _implausible(
+    photo: Photo, world: upright.Upright, rank: int, corners: Corners, aspect: float
+) -> tuple[str, str] | None:
+    """Tell, as a reason and a detail, why a quad is not to be believed, if it isn't."""
+    lean = lean_sd_deg(photo, world, rank, corners)
+    if lean > MOST_LEANING_DEG / WITHIN:
+        return "direction unsure", f"sides may lean, sd {lean:.1f} degrees"
+    if not ASPECTS[0] <= aspect <= ASPECTS[1]:
+        return "aspect implausible", f"{aspect:.3g}"
+    return None
 
 
 def _rejected(photo: Photo, facade: Facade, reason: str, detail: str = "") -> Rejection:
@@ -168,11 +186,35 @@ def _aspect_sd(
     """
     middles = (corners + np.roll(corners, -1, axis=0)) / 2
     slope = np.zeros(len(world.parameters))
+    for i, flat in _moved(photo, world, rank, middles):
+        width, height = flat[1, 0] - flat[3, 0], flat[2, 1] - flat[0, 1]
+        slope[i] = (width / height - aspect) / STEP
+    return float(np.sqrt(slope @ world.covariance @ slope))
+
+
+def lean_sd_deg(
+    photo: Photo, world: upright.Upright, rank: int, corners: Corners
+) -> float:
+    """Estimate by how far a front's left or right side may lean once straightened.
+
+    In an oblique view a small error of the vertical point leans the far side by much
+    more, so that this, and not the point's own error, tells whether a front is square.
+    The quad's corners are held, and each parameter is moved; to first order.
+    """
+    slope = np.zeros((2, len(world.parameters)))
+    for i, flat in _moved(photo, world, rank, corners):
+        side = flat[[3, 2]] - flat[[0, 1]]  # upright in the world as it is
+        slope[:, i] = np.arctan2(side[:, 0], side[:, 1]) / STEP
+    variance = np.einsum("si,ij,sj->s", slope, world.covariance, slope)
+    return float(np.degrees(np.sqrt(variance.max())))
+
+
+def _moved(
+    photo: Photo, world: upright.Upright, rank: int, points: Points
+) -> Iterator[tuple[int, Points]]:
+    """Carry points to a front's plane with each parameter that matters moved."""
     for i in (0, 1, 2, 3 + rank):
         moved = world.parameters.copy()
-        moved[i] += 1e-4
-        plane = _plane(photo, moved, rank, middles)
-        flat = homography.apply(np.linalg.inv(plane), middles)
-        width, height = flat[1, 0] - flat[3, 0], flat[2, 1] - flat[0, 1]
-        slope[i] = (width / height - aspect) / 1e-4
-    return float(np.sqrt(slope @ world.covariance @ slope))
+        moved[i] += STEP
+        plane = _plane(photo, moved, rank, points)
+        yield i, homography.apply(np.linalg.inv(plane), points)

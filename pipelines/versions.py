@@ -23,7 +23,7 @@ from pipelines.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 4,
     "matte": 4,
-    "rectify": 3,
+    "rectify": 4,
     "inpaint": 3,
     "block": 1,
     "thumbnail": 1,

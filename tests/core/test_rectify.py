@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nostalgin_core import evidence, rectify
+from nostalgin_core import evidence, orient, rectify, upright
 from nostalgin_core.measure_rectification import worst_angle_deg
 from nostalgin_core.records import Box, Elevation, Facade, Matted, Photo, Rejection
 from tests.painted_front import Painted, photograph
@@ -152,3 +152,31 @@ def test_far_corners_are_cut_off_by_a_rejection_and_not_by_memory(
     (result,) = rectify.rectify(corner.photo, replace(corner.matted, facades=(wide,)))
     if isinstance(result, Elevation):
         assert result.image.size < 4 * everything.size
+
+
+def known_to(corner: Painted, sd_deg: float) -> upright.Upright:
+    """Make the painted corner's world, with roll and tilt known to so many degrees."""
+    world = orient.orient(corner.photo, corner.matted.facades).world
+    sds = np.radians([0.0, sd_deg, sd_deg, 0.0, 0.0])
+    return upright.Upright(world.parameters, np.diag(sds**2), world.support)
+
+
+def test_a_side_leans_in_proportion_to_what_is_unsure(corner: Painted) -> None:
+    leans = [
+        rectify.lean_sd_deg(corner.photo, known_to(corner, sd), 0, corner.quads[0])
+        for sd in (0.0, 0.5, 1.0)
+    ]
+    assert leans[0] == 0
+    assert leans[2] == pytest.approx(2 * leans[1])
+    assert leans[2] > 0.5
+
+
+@pytest.mark.parametrize(("sd_deg", "straight"), [(0.2, True), (6.0, False)])
+def test_a_front_whose_sides_may_lean_is_rejected(
+    corner: Painted, sd_deg: float, *, straight: bool
+) -> None:
+    facade, world = corner.matted.facades[0], known_to(corner, sd_deg)
+    result = rectify.elevation(corner.photo, facade, world, 0, orient.BOTH)
+    assert bool(result) == straight
+    if isinstance(result, Rejection):
+        assert result.reason == "direction unsure"
