@@ -22,11 +22,14 @@ import torch
 import torch.nn.functional as F  # noqa: N812 - everybody's name for it
 from torch import Tensor
 
+from export.ahead import ahead
 from export.inpainter import Critic, Generator
 from export.inpainter_exam import answer, before, exam, marks, navier_stokes, picture
 from export.inpainting_data import Kind, Sheet, sheets
 from export.inpainting_samples import Sample, mixture, tensors
 from export.masks import Outline, outlines
+
+MOST_STEPS = 10**7  # minutes end a training long before
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +79,14 @@ def batch(
 class Trainer:
     """Both networks and their optimisers, which belong together."""
 
-    def __init__(self, recipe: Recipe) -> None:
+    def __init__(self, recipe: Recipe, *, device: str = "cpu") -> None:
         """Start anew from the recipe's seed."""
         torch.manual_seed(recipe.seed)
         self.recipe = recipe
-        self.generator = Generator(width=recipe.width, stride=recipe.stride)
-        self.critic = Critic()
+        self.device = torch.device(device)
+        generator = Generator(width=recipe.width, stride=recipe.stride)
+        self.generator = generator.to(self.device)
+        self.critic = Critic().to(self.device)
         self.averaged = {k: v.clone() for k, v in self.generator.state_dict().items()}
         self.for_generator = torch.optim.Adam(
             self.generator.parameters(), lr=recipe.rate, betas=(0.5, 0.99)
@@ -115,10 +120,13 @@ class Trainer:
     def advance(self, samples: list[Sample]) -> dict[str, float]:
         """Take one step on one batch."""
         recipe = self.recipe
-        image, hole, guesses, scored = tensors(samples)
+        image, hole, guesses, scored = (t.to(self.device) for t in tensors(samples))
         for group in self.for_generator.param_groups:
             group["lr"] = recipe.rate * min(1.0, (self.step + 1) / 50)
-        coarse, fine = self.generator(image, hole, guesses)
+        with self.mixed():
+            coarse, fine = (
+                made.float() for made in self.generator(image, hole, guesses)
+            )
         losses = {
             "coarse": off_by(coarse, image, scored),
             "fine": off_by(fine, image, scored),
@@ -143,6 +151,11 @@ class Trainer:
         for name, value in self.generator.state_dict().items():
             self.averaged[name].lerp_(value, 1 - keep)
         return {name: float(loss.detach()) for name, loss in losses.items()}
+
+    def mixed(self) -> torch.autocast:
+        """Reckon in bfloat16 on a GPU, where it is safe; on a CPU, in float32."""
+        gpu = self.device.type == "cuda"
+        return torch.autocast(self.device.type, dtype=torch.bfloat16, enabled=gpu)
 
     def _judge(self, true: Tensor, made: Tensor, hole: Tensor) -> Tensor:
         """Teach the critic, with the hinge loss (free-form paper, equation 3)."""
@@ -184,12 +197,12 @@ class Diary:
             print(line, file=log)
 
 
-def begin(checkpoint: Path, given: dict[str, Any]) -> Trainer:
+def begin(checkpoint: Path, given: dict[str, Any], *, device: str) -> Trainer:
     """Go on from a checkpoint, its recipe changed by what is given, or start anew."""
     if not checkpoint.exists():
-        return Trainer(Recipe(**given))
-    state = torch.load(checkpoint, weights_only=True)
-    trainer = Trainer(Recipe(**(state["recipe"] | given)))
+        return Trainer(Recipe(**given), device=device)
+    state = torch.load(checkpoint, weights_only=True, map_location=device)
+    trainer = Trainer(Recipe(**(state["recipe"] | given)), device=device)
     trainer.restore(state)
     return trainer
 
@@ -202,6 +215,7 @@ def train(
     *,
     minutes: float,
     every: int,
+    workers: int = 0,
 ) -> None:
     """Take steps until the minutes are over; examine and save every so many."""
     diary, questions = Diary(folder / "log.jsonl"), exam(pictures)
@@ -213,8 +227,11 @@ def train(
     diary.note(trainer.step, taught=len(taught), **counts)
     until = time.monotonic() + 60 * minutes
     recent: list[dict[str, float]] = []
-    while time.monotonic() < until:
-        drawn = batch(trainer.recipe, trainer.step, taught, silhouettes)
+
+    def draw(step: int) -> list[Sample]:
+        return batch(trainer.recipe, step, taught, silhouettes)
+
+    for drawn in ahead(draw, trainer.step, MOST_STEPS, workers=workers):
         recent.append(trainer.advance(drawn))
         if trainer.step % 50 == 0:
             names = recent[-1]
@@ -228,6 +245,8 @@ def train(
             diary.note(trainer.step, exam="ours", l1=l1, l2=l2)
             sheet = picture(made[::3], questions[::3])
             cv2.imwrite(str(folder / f"sample_{trainer.step:06d}.png"), sheet)
+        if time.monotonic() > until:
+            break
     save(trainer.state(), folder / "checkpoint.pt")
 
 
@@ -239,6 +258,8 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--every", type=int, default=200, help="steps between exams")
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--device", default="cpu", help="cpu or cuda")
+    parser.add_argument("--workers", type=int, default=0, help="that draw samples")
     for name, value in asdict(Recipe()).items():
         parser.add_argument(f"--{name.replace('_', '-')}", type=type(value))
     options = vars(parser.parse_args())
@@ -247,12 +268,13 @@ def main() -> None:
     folder: Path = options["folder"]
     folder.mkdir(parents=True, exist_ok=True)
     train(
-        begin(folder / "checkpoint.pt", given),
+        begin(folder / "checkpoint.pt", given, device=options["device"]),
         sheets(options["data"]),
         outlines(options["data"]),
         folder,
         minutes=options["minutes"],
         every=options["every"],
+        workers=options["workers"],
     )
 
 

@@ -19,13 +19,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from export.ahead import ahead
 from export.copy_paste import Donor, donors, paste
 from export.held_out import as_callable, figures
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.painted_segmentation_data import read_painted
-from export.segmentation_data import UNSCORED, Sample, read_folder, truth, view
+from export.segmentation_data import UNSCORED, Sample, Truth, read_folder, truth, view
 from export.wear import wear
 from export.weights import read_weights
+from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Category
 from nostalgin_core.segment import CATEGORIES
 
@@ -65,11 +67,36 @@ class Run:
     optimiser: torch.optim.Optimizer
     step: int = 0
 
+    @property
+    def device(self) -> torch.device:
+        """Tell where the network is."""
+        return next(self.network.parameters()).device
 
-def begin(weights: dict[str, np.ndarray], schedule: Schedule) -> Run:
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """One photo as the network is shown it, and what it should answer."""
+
+    image: Gray
+    answer: Truth
+
+    def tensors(self, device: torch.device) -> tuple[Tensor, list[dict[str, Tensor]]]:
+        """Give both to torch."""
+        gray = torch.from_numpy(self.image.astype(np.float32))[None, None]
+        target = {
+            "boxes": torch.from_numpy(self.answer.boxes).to(device),
+            "labels": torch.from_numpy(self.answer.labels).to(device),
+            "masks": torch.from_numpy(self.answer.masks.astype(np.uint8)).to(device),
+        }
+        return gray.to(device, memory_format=torch.channels_last), [target]
+
+
+def begin(
+    weights: dict[str, np.ndarray], schedule: Schedule, *, device: str = "cpu"
+) -> Run:
     """Set up a run from weights; optimiser and average start anew."""
     torch.manual_seed(schedule.seed)
-    network = load_weights(MaskRCNN(), weights)
+    network = load_weights(MaskRCNN(), weights).to(device)
     freeze(network)
     learning = [p for p in network.parameters() if p.requires_grad]
     optimiser = torch.optim.AdamW(learning, lr=schedule.rate, weight_decay=1e-3)
@@ -77,27 +104,17 @@ def begin(weights: dict[str, np.ndarray], schedule: Schedule) -> Run:
     return Run(network, average, optimiser)
 
 
-def advance(
-    run: Run,
-    schedule: Schedule,
-    pools: Sequence[Sequence[Sample]],
-    cut: Sequence[Donor],
-) -> dict[str, float]:
-    """Take one step and return its mean losses.
-
-    Each photo comes from a pool drawn evenly, so that a small pool is not drowned.
-    """
+def advance(run: Run, schedule: Schedule, seen: Sequence[Seen]) -> dict[str, float]:
+    """Take one step on what `drawn` gave for it, and return its mean losses."""
     torch.manual_seed(schedule.seed * 1_000_003 + run.step)
     run.network.train()
     run.optimiser.zero_grad(set_to_none=True)
     sums: dict[str, float] = {}
-    for turn in range(schedule.batch):
-        rng = np.random.default_rng([schedule.seed, run.step, turn])
-        gray, answers = drawn(pools, cut, rng, schedule)
-        losses = run.network(gray, answers)
-        torch.stack(list(losses.values())).sum().div(schedule.batch).backward()
+    for one in seen:
+        losses = run.network(*one.tensors(run.device))
+        torch.stack(list(losses.values())).sum().div(len(seen)).backward()
         for name, loss in losses.items():
-            sums[name] = sums.get(name, 0.0) + loss.item() / schedule.batch
+            sums[name] = sums.get(name, 0.0) + loss.item() / len(seen)
     learning = [p for p in run.network.parameters() if p.requires_grad]
     torch.nn.utils.clip_grad_norm_(learning, schedule.clip)
     for group in run.optimiser.param_groups:
@@ -119,10 +136,27 @@ def _average(run: Run, schedule: Schedule) -> None:
 def drawn(
     pools: Sequence[Sequence[Sample]],
     cut: Sequence[Donor],
+    step: int,
+    schedule: Schedule,
+) -> list[Seen]:
+    """Draw the photos of one step, the same ones every time."""
+    rngs = [
+        np.random.default_rng([schedule.seed, step, turn])
+        for turn in range(schedule.batch)
+    ]
+    return [dressed(pools, cut, rng, schedule) for rng in rngs]
+
+
+def dressed(
+    pools: Sequence[Sequence[Sample]],
+    cut: Sequence[Donor],
     rng: np.random.Generator,
     schedule: Schedule,
-) -> tuple[Tensor, list[dict[str, Tensor]]]:
-    """Draw one photo, dress it up, and return it with what should be answered."""
+) -> Seen:
+    """Draw one photo, dress it up, and return it with what should be answered.
+
+    It comes from a pool drawn evenly, so that a small pool is not drowned.
+    """
     short_px = schedule.short_px
     wanted = [CATEGORIES.index(name) + 1 for name in schedule.answering]
     while True:
@@ -134,13 +168,8 @@ def drawn(
         if np.isin(answer.labels, wanted).any():
             break
     kept = np.isin(answer.labels, [*wanted, UNSCORED])
-    gray = torch.from_numpy(wear(sample.image, rng).astype(np.float32))[None, None]
-    target = {
-        "boxes": torch.from_numpy(answer.boxes[kept]),
-        "labels": torch.from_numpy(answer.labels[kept]),
-        "masks": torch.from_numpy(answer.masks[kept].astype(np.uint8)),
-    }
-    return gray.to(memory_format=torch.channels_last), [target]
+    parts = answer.boxes[kept], answer.labels[kept], answer.masks[kept]
+    return Seen(wear(sample.image, rng), Truth(*parts))
 
 
 def save(run: Run, path: Path) -> None:
@@ -155,17 +184,18 @@ def save(run: Run, path: Path) -> None:
     path.with_suffix(".tmp").replace(path)
 
 
-def resume(path: Path, schedule: Schedule) -> Run:
+def resume(path: Path, schedule: Schedule, *, device: str = "cpu") -> Run:
     """Go on from a checkpoint, exactly."""
-    parts = torch.load(path, weights_only=True)
-    run = begin({k: v.numpy() for k, v in parts["network"].items()}, schedule)
+    parts = torch.load(path, weights_only=True, map_location=device)
+    weights = {k: v.cpu().numpy() for k, v in parts["network"].items()}
+    run = begin(weights, schedule, device=device)
     run.optimiser.load_state_dict(parts["optimiser"])
     return Run(run.network, parts["average"], run.optimiser, parts["step"])
 
 
 def averaged(run: Run) -> MaskRCNN:
     """Return the network with its averaged weights, ready to be asked."""
-    weights = {k: v.numpy() for k, v in run.average.items()}
+    weights = {k: v.cpu().numpy() for k, v in run.average.items()}
     return load_weights(MaskRCNN(), weights).eval()
 
 
@@ -176,6 +206,7 @@ def main() -> None:
     schedule = Schedule(
         steps=args.steps,
         rate=args.rate,
+        batch=args.batch,
         seed=args.seed,
         answering=tuple(args.answering),
     )
@@ -188,13 +219,18 @@ def main() -> None:
     args.into.mkdir(parents=True, exist_ok=True)
     checkpoint = args.into / "last.pt"
     if checkpoint.exists():
-        run = resume(checkpoint, schedule)
+        run = resume(checkpoint, schedule, device=args.device)
     else:
-        run = begin(read_weights(args.start), schedule)
+        run = begin(read_weights(args.start), schedule, device=args.device)
+
+    def draw(step: int) -> list[Seen]:
+        return drawn(pools, cut, step, schedule)
+
+    shown = ahead(draw, run.step, schedule.steps, workers=args.workers)
     with (args.into / "log.jsonl").open("a") as log:
         since = time.monotonic()
-        while run.step < schedule.steps:
-            losses = advance(run, schedule, pools, cut)
+        for seen in shown:
+            losses = advance(run, schedule, seen)
             row: dict[str, object] = {"step": run.step, **losses}
             row["seconds"] = round(time.monotonic() - since, 1)
             if run.step % args.save_every == 0:
@@ -220,6 +256,9 @@ def _arguments() -> argparse.Namespace:
         "--answering", nargs="+", choices=CATEGORIES, default=usual.answering
     )
     parser.add_argument("--seed", type=int, default=usual.seed)
+    parser.add_argument("--batch", type=int, default=usual.batch)
+    parser.add_argument("--device", default="cpu", help="cpu or cuda")
+    parser.add_argument("--workers", type=int, default=0, help="that draw photos")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--save-every", type=int, default=50)
     parser.add_argument("--judge-every", type=int, default=250)

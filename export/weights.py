@@ -18,8 +18,8 @@ CAST = "|half"  # ends the names of weights that an ONNX file stores in half pre
 def read_weights(path: Path) -> dict[str, np.ndarray]:
     """Read `.npz`, an exported `.onnx`, or the averaged weights of a checkpoint."""
     if path.suffix == ".pt":
-        average = torch.load(path, weights_only=True)["average"]
-        return {name: value.numpy() for name, value in average.items()}
+        average = torch.load(path, weights_only=True, map_location="cpu")["average"]
+        return {name: value.cpu().numpy() for name, value in average.items()}
     if path.suffix == ".onnx":
         return weights_of(onnx.load(str(path)))
     with np.load(path) as arrays:

@@ -18,6 +18,7 @@ from export.train_mask_rcnn import (  # noqa: E402
     averaged,
     begin,
     drawn,
+    dressed,
     resume,
     save,
 )
@@ -64,11 +65,13 @@ def test_a_stem_that_saw_colour_sees_gray_the_same() -> None:
 def test_a_network_may_answer_some_things_alone() -> None:
     fronts = replace(SHORT, answering=("facade",))
     for seed in range(4):
-        (every,) = drawn(POOLS, CUT, np.random.default_rng(seed), SHORT)[1]
-        (some,) = drawn(POOLS, CUT, np.random.default_rng(seed), fronts)[1]
-        assert set(every["labels"].tolist()) > set(some["labels"].tolist())
-        assert set(some["labels"].tolist()) <= {1, UNSCORED}
-        assert torch.equal(some["masks"], every["masks"][every["labels"] <= 1])
+        every, some = (
+            dressed(POOLS, CUT, np.random.default_rng(seed), schedule).answer
+            for schedule in (SHORT, fronts)
+        )
+        assert set(every.labels.tolist()) > set(some.labels.tolist())
+        assert set(some.labels.tolist()) <= {1, UNSCORED}
+        np.testing.assert_array_equal(some.masks, every.masks[every.labels <= 1])
 
 
 def test_networks_that_answer_together_answer_what_each_does() -> None:
@@ -88,13 +91,14 @@ def test_training_lowers_the_loss_and_leaves_what_is_frozen() -> None:
     def loss() -> float:
         torch.manual_seed(0)
         seen = [np.random.default_rng([1, i]) for i in range(3)]
-        inputs = [drawn(POOLS, CUT, rng, SHORT) for rng in seen]
+        shown = [dressed(POOLS, CUT, rng, SHORT) for rng in seen]
+        inputs = [one.tensors(run.device) for one in shown]
         with torch.no_grad():
             return sum(float(sum(run.network(*i).values())) for i in inputs)
 
     first = loss()
     for _ in range(SHORT.steps):
-        advance(run, SHORT, POOLS, CUT)
+        advance(run, SHORT, drawn(POOLS, CUT, run.step, SHORT))
     assert loss() < 0.8 * first
     for old, new in zip(
         before, run.network.backbone.body.stem.parameters(), strict=True
@@ -105,13 +109,13 @@ def test_training_lowers_the_loss_and_leaves_what_is_frozen() -> None:
 def test_a_run_that_was_cut_off_ends_where_the_whole_one_does(tmp_path: Path) -> None:
     whole, parts = begin(_weights(), SHORT), begin(_weights(), SHORT)
     for _ in range(4):
-        advance(whole, SHORT, POOLS, CUT)
+        advance(whole, SHORT, drawn(POOLS, CUT, whole.step, SHORT))
     for _ in range(2):
-        advance(parts, SHORT, POOLS, CUT)
+        advance(parts, SHORT, drawn(POOLS, CUT, parts.step, SHORT))
     save(parts, tmp_path / "last.pt")
     parts = resume(tmp_path / "last.pt", SHORT)
     for _ in range(2):
-        advance(parts, SHORT, POOLS, CUT)
+        advance(parts, SHORT, drawn(POOLS, CUT, parts.step, SHORT))
     assert parts.step == whole.step == 4
     for name, value in whole.average.items():
         assert torch.equal(value, parts.average[name]), name
@@ -128,7 +132,7 @@ def test_the_rate_rises_then_falls_to_a_hundredth() -> None:
 
 def test_the_average_of_a_run_can_be_asked() -> None:
     run = begin(_weights(), SHORT)
-    advance(run, SHORT, POOLS, CUT)
+    advance(run, SHORT, drawn(POOLS, CUT, run.step, SHORT))
     with torch.inference_mode():
         assert len(averaged(run)(torch.full((1, 1, 64, 64), 90.0))) == 4
 
