@@ -85,12 +85,6 @@ def worst_angle_deg(quad: Corners, photo_from_elevation: Matrix3) -> float:
     return float(np.degrees(np.arcsin(np.minimum(cosines, 1.0))).max())
 
 
-def corner_error(found: Corners, true: Corners) -> float:
-    """Measure the mean distance of a quad's corners, over the true quad's diagonal."""
-    diagonal = np.linalg.norm(true[2] - true[0])
-    return corner_error_px(found, true) / float(diagonal)
-
-
 def corner_error_px(found: Corners, true: Corners) -> float:
     """Measure the mean distance of a quad's corners from the true ones."""
     return float(np.linalg.norm(found - true, axis=1).mean())
