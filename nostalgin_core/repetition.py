@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from nostalgin_core.arrays import Mask
+from nostalgin_core.ground_floor import darkening
 from nostalgin_core.records import Box
 from nostalgin_core.resemblance import (
     NOISE,
@@ -176,7 +177,7 @@ def guess(values: Values, hole: Mask) -> Values:
     """Fill a hole with what repeats, and smoothly where nothing does.
 
     What the copies miss of the known texels, mostly shade, is carried into the hole by
-    a membrane of its own.
+    a membrane of its own. Deep inside a hole at the foot, all is darkened.
     """
     made = flow(values, hole)
     if not hole.any():
@@ -190,4 +191,4 @@ def guess(values: Values, hole: Mask) -> Values:
     missed = fill(values[window] - copied, hole[window] | ~usable)
     better = made[window] + trust**BOLD * (copied + missed - made[window])
     np.copyto(made[window], better, where=hole[window] & usable)
-    return made
+    return made * darkening(hole)

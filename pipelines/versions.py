@@ -24,7 +24,7 @@ CODE: Final = {
     "segment": 4,
     "matte": 4,
     "rectify": 4,
-    "inpaint": 3,
+    "inpaint": 4,
     "block": 1,
     "thumbnail": 1,
 }
