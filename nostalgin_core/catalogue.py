@@ -70,7 +70,7 @@ class Catalogue:
 def read(
     rows: Iterable[Mapping[str, str | None]], *, name: str = "catalogue"
 ) -> Catalogue:
-    """Read the rows of a catalogue, each by itself.
+    """Read the rows of a catalogue, each by itself; empty ones are only counted.
 
     What stands beyond the last column is found under None or no name, as `csv` has it.
     """
@@ -85,6 +85,8 @@ def read(
     entries, rejections = [], []
     for number, (row, whole) in enumerate(zip(listed, given, strict=True), FIRST_ROW):
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
+        if not any(map(_text, row.values())) and not whole.get(None):
+            continue
         try:
             _check_width(whole)
             entry, doubts = from_cells(cells, number)

@@ -1,8 +1,6 @@
 """From a folder of photos and a catalogue to the manifest of a city."""
 
-import csv
 import hashlib
-import io
 import os
 import re
 from collections import defaultdict
@@ -15,7 +13,7 @@ from nostalgin_core import catalogue, rings
 from nostalgin_core.catalogue import Catalogue
 from nostalgin_core.entry import Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
-from pipelines import manifest
+from pipelines import comma, manifest
 from pipelines.store import Store
 from pipelines.title import cleaned
 
@@ -154,15 +152,11 @@ def from_csv(path: Path) -> Catalogue:
         Nothing: if it can't be read, or no row of it makes sense.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
-        reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
-        rows, names = list(reader), list(reader.fieldnames or [])
+        _, rows = comma.parsed(path.read_bytes())
     except OSError as problem:
         raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
-    except (UnicodeDecodeError, csv.Error) as problem:
-        raise Nothing(f"{path} is no CSV in UTF-8 ({problem})") from problem
-    if len(names) == 1 and (mark := re.search(r"[;\t|]", names[0])):
-        raise Nothing(f"{path} parts its cells by {mark[0]!r}: save it with commas")
+    except comma.NoTable as problem:
+        raise Nothing(f"{path} {problem}") from problem
     read = catalogue.read(rows, name=path.name)
     return useful(read, path)
 

@@ -6,9 +6,10 @@ that was mended by hand is noticed, and wins; it keeps the city's title, too. Co
 are documented in `docs/manifest.md`; columns that are not known are kept.
 """
 
-import csv
+import dataclasses
 import hashlib
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -17,7 +18,7 @@ import pyarrow.parquet as pq
 
 from nostalgin_core.entry import inside
 from nostalgin_core.records import Front, Rejection
-from pipelines import tables
+from pipelines import comma, tables
 from pipelines.cells import front_from, text
 from pipelines.store import Store, parquet_bytes
 
@@ -85,7 +86,7 @@ def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
     known = SCHEMA.names
     others = sorted({name for row in rows for name in row} - set(known))
     ordered = sorted(rows, key=place)
-    text = to_csv(ordered, [*known, *others]).encode()
+    text = comma.written([*known, *others], ordered).encode()
     extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
     table = pa.Table.from_pylist(ordered, extended)
     mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
@@ -132,15 +133,6 @@ def natural(text: str | None) -> tuple[int, str]:
     return 10**DIGITS, text or ""
 
 
-def to_csv(rows: list[dict[str, Any]], names: list[str]) -> str:
-    """Write rows as comma-separated values."""
-    sink = io.StringIO()
-    writer = csv.DictWriter(sink, names, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return sink.getvalue()
-
-
 def read(store: Store) -> Manifest:
     """Read the manifest: the CSV if it was mended by hand, else the Parquet file.
 
@@ -181,22 +173,21 @@ def parsed(data: bytes, where: str) -> pa.Table:
         ) from problem
 
 
-def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[dict[str, Any]]]:
-    """Parse the form that people mend; a spreadsheet may have put a mark in front."""
+def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
+    """Parse the form that people mend."""
     try:
-        reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig")), strict=True)
-        rows = [dict(row) for row in reader]
-    except (UnicodeDecodeError, csv.Error) as problem:
-        raise Unusable(
-            f"{where} can't be read ({problem}): save it as UTF-8"
-        ) from problem
-    return list(reader.fieldnames or []), rows
+        return comma.parsed(data)
+    except comma.NoTable as problem:
+        raise Unusable(f"{where} {problem}") from problem
 
 
 def checked(
-    cells: list[dict[str, Any]], names: list[str], data: bytes, name: str
+    cells: list[comma.Cells], names: list[str], data: bytes, name: str
 ) -> Manifest:
-    """Check every row by itself, so that one bad row spoils no other."""
+    """Check every row by itself, so that one bad row spoils no other.
+
+    Rows in which nothing is written are counted, and else ignored.
+    """
     missing = [one for one in REQUIRED if one not in names]
     if missing:
         raise Unusable(
@@ -205,16 +196,42 @@ def checked(
         )
     unknown = [one for one in names if one not in SCHEMA.names]
     warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
-    results = [usable(number, row) for number, row in enumerate(cells, FIRST_ROW)]
+    results = [
+        usable(number, row)
+        for number, row in enumerate(cells, FIRST_ROW)
+        if not comma.blank(row)
+    ]
+    rows = tuple(one for one in results if isinstance(one, Row))
     return Manifest(
-        tuple(one for one in results if isinstance(one, Row)),
+        rows,
         tuple(one for one in results if isinstance(one, Rejection)),
-        tuple(warnings),
+        (*warnings, *contradictions(rows)),
         hashlib.sha256(data).hexdigest(),
     )
 
 
-def usable(number: int, cells: dict[Any, Any]) -> Row | Rejection:
+def contradictions(rows: Sequence[Row]) -> list[str]:
+    """Name the rows that tell a front otherwise than an earlier row, which counts."""
+    first: dict[tuple[str, str], Row] = {}
+    told = []
+    for row in rows:
+        if row.front is None:
+            continue
+        known = first.setdefault((row.front.block, row.front.front_id), row)
+        if known.front is not None and known.front != row.front:
+            differing = [
+                one.name
+                for one in dataclasses.fields(Front)
+                if getattr(known.front, one.name) != getattr(row.front, one.name)
+            ]
+            told.append(
+                f"{row.key}: {', '.join(differing)} of front {row.front.front_id} "
+                f"differ from row {known.number}, which counts; mend all its rows"
+            )
+    return told
+
+
+def usable(number: int, cells: comma.Cells) -> Row | Rejection:
     """Check one row, and name the row and the remedy if it can't be used."""
     name = f"{CSV} row {number}"
     if None in cells:

@@ -194,6 +194,25 @@ def test_a_block_that_is_not_there_is_named(photos: Path) -> None:
         indexed(photos, CATALOGUE, blocks=["1000"])
 
 
+def test_an_empty_line_is_counted_and_else_ignored(photos: Path) -> None:
+    text = CATALOGUE.replace("b/993_2", "\n,,,,,,\nb/993_2").replace(",3,8,", ",3,x,")
+    made = indexed(photos, text)
+    assert [one.key for one in made.rejections] == ["list.csv row 5", "b/993_2.jpg"]
+
+
+def test_a_carriage_return_in_a_name_does_not_break_the_mended_manifest(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for name in ("5_1.jpg", "two\rlines.jpg"):
+        (folder / name).write_bytes(b"x")
+    indexed(folder, None)
+    path = tmp_path / "city" / manifest.CSV
+    path.write_bytes(path.read_bytes().replace(b"7.62", b"8"))
+    assert sorted(lot for lot, _ in pairs(folder)) == ["5_1.jpg", "two\rlines.jpg"]
+
+
 def test_a_bad_row_is_named_and_spoils_no_other(photos: Path) -> None:
     made = indexed(
         photos, CATALOGUE.replace("First Street,1,10", "First Street,1,wide")

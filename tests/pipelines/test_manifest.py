@@ -150,13 +150,37 @@ def test_a_bad_row_is_named_and_spoils_no_other(
     assert len(found.rows) == 3
 
 
+def test_an_empty_line_is_counted_and_else_ignored(store: Store) -> None:
+    edit(store, ("\n/photos,stray.jpg", "\n\n,,,\n/photos,../stray.jpg"))
+    found = manifest.read(store)
+    assert len(found.rows) == 3
+    assert [one.key for one in found.rejections] == ["manifest.csv row 7"]
+
+
+def test_a_row_that_tells_a_front_otherwise_than_another_is_named(store: Store) -> None:
+    edit(store, ("/photos,a.jpg,An archive,993-1-1", "/photos,a.jpg,Other,993-1-1"))
+    assert manifest.read(store).warnings == ()
+    edit(store, ("a.jpg,Other,993-1-1,993,1,0,1,1", "a.jpg,Other,993-1-1,993,1,0,1,7"))
+    (warning,) = manifest.read(store).warnings
+    assert warning.startswith("manifest.csv row 4: rank of front 993-1-1")
+    assert "row 3, which counts" in warning
+
+
 def test_a_row_of_nothing_is_refused(store: Store) -> None:
     edit(store, ("stray.jpg", ""))
     assert [one.reason for one in manifest.read(store).rejections] == ["empty row"]
 
 
 @pytest.mark.parametrize(
-    "data", [b"", b"\xff\xfe\x00nonsense", b"a,b\n1,2\n", b"photo\n\0\n", b'photo,"\n']
+    "data",
+    [
+        b"",
+        b"\xff\xfe\x00nonsense",
+        b"a,b\n1,2\n",
+        b"photo;lot\n",
+        b"photo\n\0\n",
+        b'photo,"\n',
+    ],
 )
 def test_nonsense_is_refused_by_name(store: Store, data: bytes) -> None:
     (Path(store.root) / manifest.CSV).write_bytes(data)
