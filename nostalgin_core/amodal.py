@@ -9,7 +9,7 @@ to the camera, and so lower in the photo, than the wall behind.
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from nostalgin_core.arrays import Mask
 
@@ -27,8 +27,7 @@ def amodal(visible: Mask, occluders: Mask) -> Mask:
     ends = np.array([columns[0], columns[-1]])
     feet = np.clip(np.polyval(ground, ends), 0, visible.shape[0] - 1)
     corners = np.column_stack([ends, feet])
-    outline = np.argwhere(_rim(visible))[:, ::-1]
-    points = np.concatenate([outline, corners]).astype(np.float32)
+    points = np.concatenate([_ends(visible), corners]).astype(np.float32)
     hull = np.round(cv2.convexHull(points)).astype(np.int32)
     covered = np.zeros(visible.shape, np.uint8)
     cv2.fillConvexPoly(covered, hull, 1)
@@ -79,7 +78,9 @@ def _fit(x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, " 2"]:
     return np.array([slope, float(np.median(y - slope * x))])
 
 
-def _rim(mask: Mask) -> Mask:
-    """Return the mask's pixels that touch its outside."""
-    inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8))
-    return mask & (inner == 0)
+def _ends(mask: Mask) -> Int[np.ndarray, "n 2"]:
+    """Return where a mask's rows begin and end: its convex hull needs no more."""
+    rows = np.flatnonzero(mask.any(1))
+    left = np.argmax(mask[rows], axis=1)
+    right = mask.shape[1] - 1 - np.argmax(mask[rows, ::-1], axis=1)
+    return np.stack([np.concatenate([left, right]), np.tile(rows, 2)], axis=1)

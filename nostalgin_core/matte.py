@@ -17,6 +17,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Final
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Int
 
@@ -35,6 +36,7 @@ from nostalgin_core.trimap import (
 
 EPSILON: Final = 1e-5  # film grain has a standard deviation of 0.003 to 0.01
 BELIEF: Final = 0.01  # in the network, where the image shows no edge
+DIRECT: Final = 5_000  # unknowns; a belief leaves less for the full size to mend
 _HIDDEN: Final = 0.95  # of a pixel: as good as wholly hidden
 _FAR: Final = 1e6  # px: farther than any photo is wide
 _MARGIN_PX: Final = 4  # round a band: a window, and the known pixels beside it
@@ -81,12 +83,12 @@ def matte(
     likely = highest([i for i in instances if i.category == "facade"], shape)[cut]
     common = solve(*outline(built, likely, hidden, px=facade_px))
     seen = common * (1.0 - hidden)
-    shares = _shares(solve, wholes, seen, facade_px[0])
+    alphas = _shared(solve, wholes, seen, facade_px)
     hiding = _placed(hidden, cut, shape)
     return Matted(
         tuple(
-            replace(front, alpha=_placed(seen * share, cut, shape))
-            for front, share in zip(fronts, shares, strict=True)
+            replace(front, alpha=_placed(alpha, cut, shape))
+            for front, alpha in zip(fronts, alphas, strict=True)
         ),
         tuple(_occluder(i, hiding, least) for i in hiders),
     )
@@ -103,7 +105,7 @@ def soft(
     part = _around(band)
     prior = Belief(likely[part], belief)
     result[part] = closed_form.alpha(
-        image[part], known[part], prior=prior, epsilon=epsilon
+        image[part], known[part], prior=prior, epsilon=epsilon, direct=DIRECT
     )
     return result
 
@@ -120,7 +122,10 @@ def highest(instances: Sequence[Instance], shape: tuple[int, int]) -> _Soft:
 
 def grown(mask: Mask, distance_px: float) -> Mask:
     """Add what lies within a distance of a mask."""
-    return signed_distance(mask) >= -distance_px
+    if not mask.any():
+        return mask.copy()
+    away = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 5)
+    return away <= distance_px + np.float32(0.5)
 
 
 def _hidden(
@@ -147,56 +152,57 @@ def outline(
     return np.where(hidden < _HIDDEN, known, sure), agreed
 
 
-def _shares(
-    solve: _Solve, wholes: Sequence[Mask], seen: _Soft, seam_px: float
+def _shared(
+    solve: _Solve, wholes: Sequence[Mask], seen: _Soft, px: tuple[float, float]
 ) -> list[_Soft]:
-    """Share each pixel among the fronts: the nearest takes it, but for matted seams.
+    """Share what is seen among the fronts: the nearest takes it, but for matted seams.
 
     Half the difference of two fronts' depths is the distance to the middle between
     them, wherever they touch, overlap or leave a gap. Fronts stand in a row, so every
     other one is told from those between, all seams in one go; where two of a kind meet,
     the middle parts them.
     """
+    alphas = [np.zeros_like(seen) for _ in wholes]
     if not (seen > 0).any():
-        return [np.zeros_like(seen) for _ in wholes]
-    part = _around(seen > 0)
-    first, second, middle = _nearest([whole[part] for whole in wholes])
+        return alphas
+    seam_px, most_px = px
+    # Nothing is seen beyond a front's band; a neighbour farther off shares no seam.
+    near = [_around(one, round(most_px + 2 * seam_px) + _MARGIN_PX) for one in wholes]
+    first, second, middle = _nearest(wholes, near)
+    for i, (alpha, here) in enumerate(zip(alphas, near, strict=True)):
+        np.multiply(seen[here], first[here] == i, out=alpha[here])
     odd = first % 2 == 1
-    seam = (middle < seam_px) & (first % 2 != second % 2) & (seen[part] > 1 - _HIDDEN)
-    known = np.full(seen.shape, BACKGROUND, np.uint8)
-    known[part] = np.where(seam, UNKNOWN, np.where(odd, FOREGROUND, BACKGROUND))
-    away = np.minimum(middle / seam_px, 1.0)
-    believed = np.zeros_like(seen)
-    believed[part] = 0.5 + 0.5 * np.where(odd, away, -away)
-    of_odd = solve(known, believed)[part]
-    of_first = np.where(odd, of_odd, 1 - of_odd)
-    shares = []
-    for i in range(len(wholes)):
-        share = np.zeros_like(seen)
-        share[part] = np.where(first == i, of_first, 0.0)
-        share[part] += np.where(second == i, 1 - of_first, 0.0)
-        shares.append(share)
-    return shares
+    seam = (middle < seam_px) & ((first + second) % 2 == 1) & (seen > 1 - _HIDDEN)
+    known = np.where(odd, np.uint8(FOREGROUND), np.uint8(BACKGROUND))
+    known[seam] = UNKNOWN
+    away = np.where(odd, middle, -middle) / np.float32(2 * seam_px)
+    of_odd = solve(known, np.clip(away + np.float32(0.5), 0, 1))[seam]
+    leads, follows, there = first[seam], second[seam], seen[seam]
+    for i, alpha in enumerate(alphas):
+        ours = of_odd if i % 2 else 1 - of_odd
+        alpha[seam] = there * ours * ((leads == i) | (follows == i))
+    return alphas
 
 
 def _nearest(
-    wholes: Sequence[Mask],
+    wholes: Sequence[Mask], near: Sequence[tuple[slice, slice]]
 ) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"], _Soft]:
     """Tell which front is deepest at each pixel, which is next, and half by how much.
 
-    A single front has none beside it: its second is -1, infinitely far.
+    A front is told of `near` it alone. Where none is, first or second is -1, infinitely
+    far.
     """
     shape = wholes[0].shape
     first, second = np.full(shape, -1, np.int16), np.full(shape, -1, np.int16)
     deepest, deep = np.full(shape, -_FAR, np.float32), np.full(shape, -_FAR, np.float32)
-    for i, whole in enumerate(wholes):
-        depth = signed_distance(whole).clip(-_FAR / 2, _FAR / 2)
-        leads = depth > deepest
-        np.copyto(second, i, where=depth > deep)
-        np.copyto(second, first, where=leads)
-        np.copyto(first, i, where=leads)
-        np.maximum(deep, np.minimum(depth, deepest), out=deep)
-        np.maximum(deepest, depth, out=deepest)
+    for i, (whole, here) in enumerate(zip(wholes, near, strict=True)):
+        depth = signed_distance(whole[here]).clip(-_FAR / 2, _FAR / 2)
+        leads = depth > deepest[here]
+        np.copyto(second[here], i, where=depth > deep[here])
+        np.copyto(second[here], first[here], where=leads)
+        np.copyto(first[here], i, where=leads)
+        np.maximum(deep[here], np.minimum(depth, deepest[here]), out=deep[here])
+        np.maximum(deepest[here], depth, out=deepest[here])
     return first, second, (deepest - deep) / 2
 
 
@@ -205,18 +211,21 @@ def _occluder(instance: Instance, hidden: _Soft, least: float) -> Occluder:
     mask = np.zeros(hidden.shape, bool)
     x0, y0, x1, y1 = instance.box
     mask[y0:y1, x0:x1] = instance.probability > least
-    reach = _around(mask) if mask.any() else np.s_[0:0, 0:0]
+    reach = (
+        slice(max(0, y0 - _MARGIN_PX), y1 + _MARGIN_PX),
+        slice(max(0, x0 - _MARGIN_PX), x1 + _MARGIN_PX),
+    )
     mask[reach] = grown(mask[reach], float(_MARGIN_PX)) & (hidden[reach] > 0.5)
     return Occluder(instance.category, instance.score, mask)
 
 
-def _around(mask: Mask) -> tuple[slice, slice]:
+def _around(mask: Mask, margin_px: int = _MARGIN_PX) -> tuple[slice, slice]:
     """Cut out a mask's bounding box, with a margin, inside the image."""
     parts = []
     for axis in (1, 0):
         places = np.flatnonzero(mask.any(axis=axis))
-        start = max(0, int(places[0]) - _MARGIN_PX)
-        parts.append(slice(start, int(places[-1]) + 1 + _MARGIN_PX))
+        start = max(0, int(places[0]) - margin_px)
+        parts.append(slice(start, int(places[-1]) + 1 + margin_px))
     return parts[0], parts[1]
 
 

@@ -37,11 +37,11 @@ def trimap(
     runs into the rim is not frayed there.
     """
     inside = probability >= 0.5
-    depth = signed_distance(inside)
+    away = np.abs(signed_distance(inside))
+    result = inside.astype(np.uint8)
+    result *= np.uint8(FOREGROUND)
     unsure = (probability > low) & (probability < high)
-    band = (np.abs(depth) <= least_px) | (unsure & (np.abs(depth) <= most_px))
-    result = np.where(inside, FOREGROUND, BACKGROUND).astype(np.uint8)
-    result[band] = UNKNOWN
+    result[(away <= least_px) | (unsure & (away <= most_px))] = UNKNOWN
     return result
 
 

@@ -22,7 +22,7 @@ from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
     "segment": 4,
-    "matte": 4,
+    "matte": 5,
     "rectify": 4,
     "inpaint": 4,
     "block": 1,

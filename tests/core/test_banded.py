@@ -33,6 +33,19 @@ def test_both_solvers_find_the_dense_solution() -> None:
         np.testing.assert_allclose(solve(system, ranks), dense, atol=1e-7)
 
 
+def test_what_is_far_from_singular_may_be_solved_imprecisely() -> None:
+    unknown = np.zeros((40, 50), bool)
+    unknown[3:37, 5:12] = unknown[20:29, 12:46] = True
+    believed = laplacian.Belief(_noise(40, 50, seed=1), 0.01)
+    system = laplacian.system(
+        _noise(40, 50), unknown, np.ones((40, 50)), prior=believed, epsilon=1e-5
+    )
+    numbering = banded.order(unknown)
+    rough = banded.solve(system, numbering, precise=False)
+    assert rough.dtype == np.float32
+    np.testing.assert_allclose(rough, banded.solve(system, numbering), atol=1e-4)
+
+
 def test_a_ring_is_a_few_times_as_wide_as_its_band() -> None:
     disc = np.zeros((300, 300), np.uint8)
     cv2.circle(disc, (150, 150), 110, 1, 8)

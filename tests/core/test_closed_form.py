@@ -62,6 +62,17 @@ def test_coarse_to_fine_stays_near_the_exact_alpha(size: tuple[int, int]) -> Non
     assert np.abs(exact - bounded).mean() < 0.003
 
 
+def test_a_belief_weighs_the_same_at_half_the_size() -> None:
+    alpha, image = _blob()
+    known = _around(alpha, 14)
+    grain = np.random.default_rng(4).normal(0, 4, image.shape)
+    noisy = np.clip(image * 0.2 + 90 + grain, 0, 255).astype(np.uint8)
+    unsure = Belief(np.full(alpha.shape, 0.5, np.float32), 0.01)
+    exact = closed_form.alpha(noisy, known, prior=unsure, epsilon=1e-5)
+    halved = closed_form.alpha(noisy, known, prior=unsure, epsilon=1e-5, direct=1_000)
+    assert np.abs(exact - halved)[known == UNKNOWN].mean() < 0.009
+
+
 @pytest.mark.parametrize("direct", [20_000, 1_000])
 def test_a_strong_belief_is_followed_and_a_weak_one_is_not(direct: int) -> None:
     alpha, image = _blob()
