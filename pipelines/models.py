@@ -134,10 +134,14 @@ def one_thread() -> None:
     """Keep the libraries of this process from starting threads of their own.
 
     Several workers with a thread each do a fifth more work in the same CPU time than
-    the libraries' defaults. It must be called before the libraries are first used.
+    the libraries' defaults. And sums that are parted among threads differ in their last
+    bits, so that the same input would not give the same bytes. Libraries that are
+    loaded already are limited too; those of child processes read the environment.
     """
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
+        os.environ[name] = "1"
     import cv2
+    from threadpoolctl import threadpool_limits
 
     cv2.setNumThreads(1)
+    threadpool_limits(1)

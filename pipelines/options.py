@@ -9,7 +9,9 @@ from apache_beam.options.pipeline_options import (
     PipelineOptions,
     StandardOptions,
 )
+from apache_beam.runners import create_runner
 
+OURS: Final = ("--city", "--models", "--shard")
 EMBEDDED: Final = "FnApiRunner"  # Beam's own runner in this process
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
@@ -34,19 +36,50 @@ def options(
     Runtime, OpenCV and NumPy is Python's own.
 
     Raises:
-        ValueError: if the shard is not k/n with 1 <= k <= n.
+        ValueError: if the shard is not k/n with 1 <= k <= n, if there is no such
+            runner, or if nobody knows one of Beam's options.
     """
     part(shard)
-    ours = [f"--city={city}", f"--models={models}", f"--shard={shard}"]
-    found = PipelineOptions([*ours, *beam])
-    if found.view_as(StandardOptions).runner in ALIASES:
-        found.view_as(StandardOptions).runner = EMBEDDED
+    ours = dict(zip(OURS, (city, models, shard), strict=True))
+    twice = [one for one in beam if one.partition("=")[0] in ours]
+    if twice:
+        raise ValueError(f"{twice[0]} is not an option of Beam's: it is given above")
+    found = PipelineOptions([*(f"{name}={ours[name]}" for name in OURS), *beam])
+    standard = found.view_as(StandardOptions)
+    if standard.runner in ALIASES:
+        standard.runner = EMBEDDED
+    known(standard.runner or EMBEDDED, beam)
     direct = found.view_as(DirectOptions)
     several = (direct.direct_num_workers or 1) != 1
     named = any(one.startswith("--direct_running_mode") for one in beam)
     if several and not named:
         direct.direct_running_mode = "multi_processing"
     return found
+
+
+def known(runner: str, beam: Sequence[str]) -> None:
+    """Insist on a runner that is there, and on options that somebody knows.
+
+    Beam drops what it does not know without a word. Runners of clusters may know more
+    options than Beam's own parser, so they are given all.
+
+    Raises:
+        ValueError: if there is no such runner or option.
+    """
+    try:
+        create_runner(runner)
+    except (ImportError, AttributeError) as problem:
+        raise ValueError(f"--runner {runner}: {problem}") from problem
+    if runner != EMBEDDED:
+        return
+    parser = argparse.ArgumentParser(
+        add_help=False, allow_abbrev=False, conflict_handler="resolve"
+    )
+    for kind in PipelineOptions.__subclasses__():
+        kind._add_argparse_args(parser)  # noqa: SLF001 - the hook that classes fill
+    strangers = parser.parse_known_args(list(beam))[1]
+    if strangers:
+        raise ValueError(f"{strangers[0]}: neither nostalgin nor Beam knows it")
 
 
 def part(shard: str) -> tuple[int, int]:

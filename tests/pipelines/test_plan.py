@@ -90,6 +90,27 @@ def test_another_runner_is_left_alone() -> None:
     assert made.get_all_options()["runner"] == "FlinkRunner"
 
 
+@pytest.mark.parametrize(
+    ("beam", "words"),
+    [
+        (["--max-rejcted", "0.1"], "--max-rejcted: neither"),
+        (["other-city"], "other-city: neither"),
+        (["--shar=1/2"], "--shar=1/2: neither"),
+        (["--shard", "1/2"], "given above"),
+        (["--city=elsewhere"], "given above"),
+        (["--runner=NoSuchRunner"], "NoSuchRunner"),
+        (["--runner=no.such.Runner"], "no.such.Runner"),
+    ],
+)
+def test_options_that_nobody_knows_are_refused(beam: list[str], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        chosen.options("city", beam=beam)
+
+
+def test_a_cluster_s_runner_may_know_more_options() -> None:
+    chosen.options("city", beam=["--runner=FlinkRunner", "--checkpointing_interval=9"])
+
+
 def test_several_workers_are_processes_unless_told_otherwise() -> None:
     several = ["--direct_num_workers=2"]
     mode = "direct_running_mode"
