@@ -23,9 +23,9 @@ from pipelines.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 4,
     "matte": 5,
-    "rectify": 4,
+    "rectify": 5,
     "inpaint": 4,
-    "block": 1,
+    "block": 2,
     "thumbnail": 1,
 }
 MODULES: Final[dict[str, tuple[ModuleType, ...]]] = {

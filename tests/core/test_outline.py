@@ -59,6 +59,25 @@ def test_what_closes_already_is_left_alone(width_m: float, depth_m: float) -> No
     np.testing.assert_allclose(headings, outline.nominal_headings(4), atol=1e-9)
 
 
+@pytest.mark.parametrize("n", range(3, 9))
+@pytest.mark.parametrize("seed", range(3))
+def test_it_does_not_matter_at_which_side_the_walk_begins(n: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    sides = [
+        Measured(
+            float(rng.uniform(20, 250)),
+            float(rng.uniform(0.01, 0.4)),
+            float(heading),
+            0.0 if n == 4 else 0.3,
+        )
+        for heading in outline.nominal_headings(n)
+    ]
+    here_m, headings = outline.close(sides)
+    there_m, turned = outline.close([*sides[2:], *sides[:2]])
+    np.testing.assert_allclose(np.roll(there_m, 2), here_m, rtol=0, atol=3e-9)
+    np.testing.assert_allclose(np.roll(turned, 2), headings, rtol=0, atol=3e-9)
+
+
 def test_the_side_known_better_moves_less() -> None:
     sides = measured([100.0, 60.0, 90.0, 60.0])
     sides[0] = Measured(100.0, 0.5, 0.0)  # hardly known
