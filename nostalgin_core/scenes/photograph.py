@@ -5,19 +5,23 @@ signs are soft sprites before them.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from nostalgin_core.scenes import crowd, film, lens, skyline, viewpoint
+from nostalgin_core.scenes import crowd, film, flaws, lens, skyline, viewpoint
 from nostalgin_core.scenes.account import true_facades, true_occluders
 from nostalgin_core.scenes.catalogue import photo_name
 from nostalgin_core.scenes.composite import SUPER, composite, shrink, soften
+from nostalgin_core.scenes.flaws import Flaws
 from nostalgin_core.scenes.lens import Camera
 from nostalgin_core.scenes.lot import Lot
 from nostalgin_core.scenes.scenery import Wear, build
 from nostalgin_core.scenes.sprite import Sprite
 from nostalgin_core.scenes.street import Neighbourhood, PaintedBlock
 from nostalgin_core.scenes.truth import PaintedPhoto, Truth
+
+PERFECT = Flaws()
 
 
 def album(
@@ -40,11 +44,13 @@ def photograph(
     view: int = 0,
     camera: Camera | None = None,
     wear: Wear | None = None,
+    flawed: Flaws = PERFECT,
 ) -> PaintedPhoto:
     """Take one photo of a lot.
 
     The camera is chosen where none is given. `wear` may give a front another texture
-    than its own, of about the same aspect.
+    than its own, of about the same aspect. Fronts are even and the lens is perfect
+    unless `flawed` says how much they are not; a bent photo's quads are bent, too.
     """
     blocks = [*neighbourhood.blocks, *neighbourhood.around]
     boxes = [block.corner_m for block in blocks]
@@ -58,7 +64,16 @@ def photograph(
         return PaintedPhoto(photo_name(lot, view), fogged, truth)
     fine = magnified(camera)
     size = (SUPER * shape[0], SUPER * shape[1])
-    canvas, walls = build(rng, fine, blocks, size, sun=neighbourhood.sun, wear=wear)
+    canvas, walls = build(
+        rng,
+        fine,
+        blocks,
+        size,
+        sun=neighbourhood.sun,
+        wear=wear,
+        stray_m=flawed.stray_m,
+    )
+    canvas = flaws.bend(canvas, flawed.barrel) if flawed.barrel else canvas
     sprites = dress(rng, fine, canvas.tone.shape, lot, blocks, text=text)
     light, shares, through = composite(canvas, sprites)
     hole = film.punch(rng, shape) if rng.random() < 0.12 else None
@@ -72,6 +87,11 @@ def photograph(
         hole=hole,
         frame=frame,
     )
+    if flawed.barrel:
+        facades = tuple(
+            replace(one, quad=flaws.bent(one.quad, shape, flawed.barrel))
+            for one in facades
+        )
     occluders = true_occluders(sprites, shares, shape, inside, hole)
     image = soften(shrink(light), shape)
     if hole is not None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nostalgin_core.arrays import Gray
-from nostalgin_core.scenes import front, ground, relief, surface, viewpoint
+from nostalgin_core.scenes import flaws, front, ground, relief, surface, viewpoint
 from nostalgin_core.scenes import wall as masonry
 from nostalgin_core.scenes.lens import Camera
 from nostalgin_core.scenes.lot import Wall
@@ -31,8 +31,9 @@ def build(
     *,
     sun: tuple[float, float, float],
     wear: Wear | None,
+    stray_m: float = 0.0,
 ) -> tuple[Canvas, list[Clad]]:
-    """Draw all walls, the ground and the sky.
+    """Draw all walls, the ground and the sky; `stray_m` is told in `flaws`.
 
     Returns the fronts that show, with what they wear, in the order of their labels.
     """
@@ -48,7 +49,7 @@ def build(
     for away, wall in sorted(standing, key=lambda item: item[0]):
         label = len(walls) if wall.style else BLANK
         cloth = dressing(wall, away, wear)
-        if surface.draw(canvas, camera, panel(wall, label), cloth):
+        if surface.draw(canvas, camera, panel(wall, label, stray_m), cloth):
             walls.extend([(wall, cloth)] if wall.style else [])
     boxes = [block.corner_m for block in blocks]
     ground.lay(rng, canvas, camera, boxes, sun=sun)
@@ -95,11 +96,12 @@ def faces(camera: Camera, wall: Wall, shape: tuple[int, int]) -> bool:
     return surface.bounds(camera, viewpoint.corners_m(wall), shape) is not None
 
 
-def panel(wall: Wall, label: int) -> Panel:
-    """Make a wall ready to draw."""
+def panel(wall: Wall, label: int, stray_m: float = 0.0) -> Panel:
+    """Make a wall ready to draw; blank walls have nothing on them that could stray."""
     start, end = np.array([*wall.start_m, 0.0]), np.array([*wall.end_m, 0.0])
     axes = np.stack([end - start, [0.0, 0.0, wall.height_m]])
-    return Panel(start, axes, label)
+    uneven = flaws.stray(wall.style, stray_m) if wall.style and stray_m else None
+    return Panel(start, axes, label, uneven)
 
 
 def haze(rng: np.random.Generator, canvas: Canvas) -> None:

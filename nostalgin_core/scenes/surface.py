@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Float, Int16
+from jaxtyping import Float, Int16, UInt8
 
 from nostalgin_core.arrays import Gray, Matrix3
 from nostalgin_core.scenes import lens
@@ -28,6 +28,7 @@ class Panel:
     origin_m: Vector  # its lower left corner, seen from its front
     axes_m: Places  # two rows: its lower and its left edge, whole length
     label: int
+    stray: Float[np.ndarray, "2 y x"] | None = None  # of its drawing (`flaws.stray`)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,7 +85,8 @@ def draw(
     panel and the inverse depth at once. The texture is asked for only when it is seen.
     """
     u, v = panel.axes_m
-    corners = panel.origin_m + np.stack([0 * u, u, u + v, v])
+    top = v if panel.stray is None else v * (1 + max(0.0, -panel.stray[1].min()))
+    corners = panel.origin_m + np.stack([0 * u, u, u + top, top])
     box = bounds(camera, corners, canvas.tone.shape)
     if box is None:
         return False
@@ -99,11 +101,20 @@ def draw(
         for row in np.linalg.inv(photo_from_unit)
     )
     window = np.s_[y0:y1, x0:x1]
-    mine = (a >= 0) & (a < near) & (b >= 0) & (b < near)
+    mine = (a >= 0) & (a < near) & (b >= 0)
     mine &= (near > 1 / FAR_M) & (near > canvas.nearness[window])
+    if panel.stray is None:
+        mine &= b < near
+    else:
+        a, b = strayed(panel.stray, a, b, near)
+        mine &= b < 1
     if not mine.any():
         return False
-    seen = sample(texture(), photo_from_unit, box, float(near[mine].max()))
+    nearest = float(near[mine].max())
+    if panel.stray is None:
+        seen = sample(texture(), photo_from_unit, box, nearest)
+    else:
+        seen = looked_up(shrunk(texture(), photo_from_unit, nearest), a, b)
     np.copyto(canvas.tone[window], seen, where=mine)
     np.copyto(canvas.nearness[window], near, where=mine)
     np.copyto(canvas.label[window], np.int16(panel.label), where=mine)
@@ -118,20 +129,73 @@ def sample(
 ) -> Float[np.ndarray, "y x"]:
     """Warp a texture into a box of the photo, shrunk first where it is far.
 
-    `nearest` is the greatest inverse depth: there one unit of the panel's height spans
-    about |H e_b| times it in pixels.
+    `nearest` is the greatest inverse depth.
     """
-    h, w = texture.shape
-    tall_px = float(np.linalg.norm(photo_from_unit[:2, 1])) * nearest
-    shrink = max(tall_px / h, 0.02)
-    if shrink < 0.7:
-        size = (max(2, round(w * shrink)), max(2, round(h * shrink)))
-        texture = cv2.resize(texture, size, interpolation=cv2.INTER_AREA)
+    texture = shrunk(texture, photo_from_unit, nearest)
     return cv2.warpPerspective(
         texture,
         box_from_texture(photo_from_unit, box, texture.shape),
         (box[2] - box[0], box[3] - box[1]),
         flags=cv2.INTER_LINEAR,
+        borderMode=cv2.BORDER_REPLICATE,
+    ).astype(np.float32)
+
+
+def shrunk(
+    texture: Gray, photo_from_unit: Matrix3, nearest: float
+) -> UInt8[np.ndarray, "_ _"]:
+    """Shrink a texture to about the size that it has in the photo, if that is less.
+
+    At the greatest inverse depth, `nearest`, one unit of the panel's height spans about
+    |H e_b| times it in pixels.
+    """
+    h, w = texture.shape
+    tall_px = float(np.linalg.norm(photo_from_unit[:2, 1])) * nearest
+    shrink = max(tall_px / h, 0.02)
+    if shrink >= 0.7:
+        return texture
+    size = (max(2, round(w * shrink)), max(2, round(h * shrink)))
+    return cv2.resize(texture, size, interpolation=cv2.INTER_AREA).astype(np.uint8)
+
+
+def strayed(
+    stray: Float[np.ndarray, "2 _ _"],
+    a: Float[np.ndarray, "y x"],
+    b: Float[np.ndarray, "y x"],
+    near: Float[np.ndarray, "y x"],
+) -> tuple[Float[np.ndarray, "y x"], Float[np.ndarray, "y x"]]:
+    """Find the place of the drawing that has strayed to each place of the panel.
+
+    Takes a / z, b / z and 1 / z, gives a and b; what lies off the panel strays as its
+    nearest edge does.
+    """
+    depth = 1 / np.maximum(near, np.float32(1 / FAR_M))
+    a, b = a * depth, b * depth
+    _, h, w = stray.shape
+    column, row = np.clip(a, 0, 1) * w - 0.5, np.clip(b, 0, 1) * h - 0.5
+    along, up = (
+        cv2.remap(
+            field.astype(np.float32),
+            column,
+            row,
+            cv2.INTER_LINEAR,
+            borderMode=cv2.BORDER_REPLICATE,
+        )
+        for field in stray
+    )
+    return a + along, b + up
+
+
+def looked_up(
+    texture: Gray, a: Float[np.ndarray, "y x"], b: Float[np.ndarray, "y x"]
+) -> Float[np.ndarray, "y x"]:
+    """Look places of a panel up in its texture."""
+    h, w = texture.shape
+    return cv2.remap(
+        texture,
+        np.clip(a, -1, 2) * w - np.float32(0.5),
+        (1 - np.clip(b, -1, 2)) * h - np.float32(0.5),
+        cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_REPLICATE,
     ).astype(np.float32)
 
