@@ -21,7 +21,7 @@ from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 4,
+    "segment": 5,
     "matte": 5,
     "rectify": 5,
     "inpaint": 4,

@@ -93,6 +93,7 @@ def answered(file: Path, network: Network) -> Answer:
     every = quantise.instances(every)
     result = segment.trusted(decoded, every)
     if not isinstance(result, Rejection):
+        result = quantise.instances(result)
         before = time.process_time()
         result = matte.matte(decoded, result)
         seconds = (segmented - start, time.process_time() - before)
