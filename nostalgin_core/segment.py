@@ -17,6 +17,7 @@ from jaxtyping import Float, Float32, Int
 from nostalgin_core.arrays import Gray, Probability
 from nostalgin_core.flare import flares
 from nostalgin_core.hiding import hiding
+from nostalgin_core.punch import punches
 from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
 
 CATEGORIES: tuple[Category, ...] = get_args(Category)
@@ -86,8 +87,8 @@ def trusted(
     """Keep what scores enough for its kind; a photo without a front is refused.
 
     A tax photo has one number board, so of the placards only the surest is kept. What
-    is painted on fronts is dropped (`hiding`); flares on them are added: no network was
-    taught them.
+    is painted on fronts is dropped (`hiding`); punched holes and flares on fronts are
+    added, for the network was taught few or none.
     """
     least = {"facade": facade_score}
     board = max((f.score for f in found if f.category == "placard"), default=0.0)
@@ -98,7 +99,7 @@ def trusted(
         and (one.category != "placard" or one.score == board)
     )
     if any(one.category == "facade" for one in kept):
-        return flares(photo, kept) + hiding(kept)
+        return punches(photo) + flares(photo, kept) + hiding(kept)
     return Rejection(
         photo.key,
         "segment",
