@@ -16,10 +16,10 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import camera, lines, sphere, vanish
+from nostalgin_core import camera, lines, vanish
 from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Box
-from pipelines.evaluate import Unmeasurable
+from pipelines.evaluate import Unmeasurable, sphere
 
 SHORT_SIDE_PX = 2048
 LONGEST = 150  # strict lines; pairs grow with the square

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from nostalgin_core import camera, lines, manhattan, measure_rectification, sphere
+from nostalgin_core import camera, lines, manhattan, measure_rectification
 from nostalgin_core.records import Box, Photo, Rejection
 from pipelines import cli
 from pipelines.evaluate import (
@@ -20,6 +20,7 @@ from pipelines.evaluate import (
     rectification_table,
     search_space,
     sheet,
+    sphere,
     york_urban,
 )
 from tests.data import DATA

@@ -3,7 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nostalgin_core import sphere, vanish
+from nostalgin_core import vanish
+from pipelines.evaluate import sphere
 from tests.core.test_vanish import pencil
 
 POINTS = {
