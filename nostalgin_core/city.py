@@ -10,8 +10,14 @@ Here that is found from the catalogue. Two blocks with fronts on the same street
 
 A block that shares no street with any other stands by itself, to the east. So do blocks
 that would overlap one that stands already.
+
+Blocks are placed one by one: the first that may face a standing one, else the first
+that may follow one. A way that is not clear never will be, for blocks that stand never
+go; so each is tried once, and a city of thousands of blocks takes no cube of them.
 """
 
+import heapq
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -75,25 +81,52 @@ def plot(name: str, outlines_m: Sequence[Points], fronts: Sequence[Front]) -> Pl
 
 def places(plots: Sequence[Plot]) -> dict[str, Move]:
     """Find where each block goes; the first stays where it is."""
+    sharing = _sharing(plots)
     moves: dict[str, Move] = {}
-    waiting = list(plots)
-    while waiting:
-        standing = [
-            _moved(one, moves[one.block]) for one in plots if one.block in moves
-        ]
-        found = next(
-            (
-                (one, move)
-                for rule in (_facing, _following)
-                for one in waiting
-                for move in rule(one, standing)
-                if _clear(_moved(one, move), standing)
-            ),
-            (waiting[0], _beside(waiting[0], standing)),
-        )
-        moves[found[0].block] = found[1]
-        waiting.remove(found[0])
+    standing: dict[int, Plot] = {}
+    grounds: list[shapely.Geometry] = []
+    tries: list[tuple[int, int, int]] = []  # a heap of rule, block, standing block
+    for first in range(len(plots)):
+        while first not in standing:
+            index, move = _next_clear(plots, standing, grounds, tries) or (
+                first,
+                _beside(plots[first], grounds),
+            )
+            moves[plots[index].block] = move
+            standing[index] = _moved(plots[index], move)
+            grounds.append(_ground(standing[index]))
+            for other in sharing[index] - standing.keys():
+                for rule in range(len(RULES)):
+                    heapq.heappush(tries, (rule, other, index))
     return moves
+
+
+def _sharing(plots: Sequence[Plot]) -> list[set[int]]:
+    """Tell for each block which blocks have a street of it."""
+    on: dict[str, set[int]] = defaultdict(set)
+    for index, one in enumerate(plots):
+        for border in one.borders:
+            on[border.street].add(index)
+    return [
+        set().union(*(on[border.street] for border in one.borders)) for one in plots
+    ]
+
+
+def _next_clear(
+    plots: Sequence[Plot],
+    standing: dict[int, Plot],
+    grounds: Sequence[shapely.Geometry],
+    tries: list[tuple[int, int, int]],
+) -> tuple[int, Move] | None:
+    """Take ways from the heap until one is clear."""
+    while tries:
+        rule, index, other = heapq.heappop(tries)
+        if index in standing:
+            continue
+        for move in RULES[rule](plots[index], standing[other]):
+            if _clear(_moved(plots[index], move), grounds):
+                return index, move
+    return None
 
 
 def carried(move: Move, points_m: Points) -> Points:
@@ -135,17 +168,16 @@ def _numbers(side: Sequence[Front]) -> tuple[int, int] | None:
     return (some[0][0], some[-1][1]) if rising else (some[0][1], some[-1][0])
 
 
-def _facing(one: Plot, standing: Sequence[Plot]) -> list[Move]:
+def _facing(one: Plot, other: Plot) -> list[Move]:
     """List the ways to stand opposite another block."""
     moves = []
-    for other in standing:
-        for theirs in other.borders:
-            for mine in one.borders:
-                opposite = None not in (mine.parity, theirs.parity) and (
-                    mine.parity != theirs.parity
-                )
-                if mine.street == theirs.street and opposite:
-                    moves.append(_opposite(mine, theirs))
+    for theirs in other.borders:
+        for mine in one.borders:
+            opposite = None not in (mine.parity, theirs.parity) and (
+                mine.parity != theirs.parity
+            )
+            if mine.street == theirs.street and opposite:
+                moves.append(_opposite(mine, theirs))
     return moves
 
 
@@ -164,15 +196,17 @@ def _opposite(mine: Border, theirs: Border) -> Move:
     return _move(_heading(theirs) + np.pi - _heading(mine), pivot, target + gap)
 
 
-def _following(one: Plot, standing: Sequence[Plot]) -> list[Move]:
+def _following(one: Plot, other: Plot) -> list[Move]:
     """List the ways to follow another block along a street."""
     moves = []
-    for other in standing:
-        for theirs in other.borders:
-            for mine in one.borders:
-                if mine.street == theirs.street and mine.parity == theirs.parity:
-                    moves += _beyond(mine, theirs)
+    for theirs in other.borders:
+        for mine in one.borders:
+            if mine.street == theirs.street and mine.parity == theirs.parity:
+                moves += _beyond(mine, theirs)
     return moves
+
+
+RULES = (_facing, _following)
 
 
 def _beyond(mine: Border, theirs: Border) -> list[Move]:
@@ -200,19 +234,18 @@ def _rise(border: Border) -> int:
     return int(np.sign(border.numbers[1] - border.numbers[0])) if border.numbers else 0
 
 
-def _beside(one: Plot, standing: Sequence[Plot]) -> Move:
-    if not standing:
+def _beside(one: Plot, grounds: Sequence[shapely.Geometry]) -> Move:
+    if not grounds:
         return Move()
-    right = max(outline[:, 0].max() for plot in standing for outline in plot.outlines_m)
+    right = float(shapely.total_bounds(np.array(grounds))[2])
     left = min(outline[:, 0].min() for outline in one.outlines_m)
     return Move(east_m=float(right - left + FALLBACK_GAP_M))
 
 
-def _clear(one: Plot, standing: Sequence[Plot]) -> bool:
-    return not any(
-        shapely.area(shapely.intersection(_ground(one), _ground(other))) > 1.0
-        for other in standing
-    )
+def _clear(one: Plot, grounds: Sequence[shapely.Geometry]) -> bool:
+    mine, others = _ground(one), np.array(grounds)
+    near = others[shapely.intersects(mine, others)]
+    return not bool((shapely.area(shapely.intersection(mine, near)) > 1.0).any())
 
 
 def _ground(one: Plot) -> shapely.Geometry:

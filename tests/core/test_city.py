@@ -51,6 +51,37 @@ def grounds(plots: list[Plot], moves: dict[str, Move]) -> list[shapely.Polygon]:
     ]
 
 
+def placed_plainly(plots: list[Plot]) -> dict[str, Move]:
+    """Try every way again at every step: the slow reader of the same rules."""
+    moves: dict[str, Move] = {}
+    while len(moves) < len(plots):
+        waiting = [one for one in plots if one.block not in moves]
+        standing = [p for p in plots if p.block in moves]
+        standing = [city._moved(one, moves[one.block]) for one in standing]
+        ground = [city._ground(one) for one in standing]
+        ways = (
+            (one.block, move)
+            for rule in city.RULES
+            for one in waiting
+            for other in standing
+            for move in rule(one, other)
+            if city._clear(city._moved(one, move), ground)
+        )
+        aside = (waiting[0].block, city._beside(waiting[0], ground))
+        name, move = next(ways, aside)
+        moves[name] = move
+    return moves
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_trying_each_way_once_places_blocks_as_trying_all_again_does(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    names = rng.choice(np.arange(10, 40), 9, replace=False)
+    plots = [plot(str(n), int(rng.integers(1, 60)) * 2 + 1) for n in names]
+    moves = city.places(plots)
+    assert moves == placed_plainly(plots)
+
+
 def test_the_first_block_stays_where_it_is() -> None:
     assert city.places([plot("10", 1)])["10"] == Move()
 
