@@ -15,7 +15,7 @@ from nostalgin_core.records import Rejection
 from pipelines import manifest, runs
 from pipelines.city import Built, city
 from pipelines.manifest import Manifest, Unusable
-from pipelines.models import Models
+from pipelines.models import Models, one_thread
 from pipelines.options import CityOptions, part
 from pipelines.plan import Plan, plan
 from pipelines.progress import Watch
@@ -62,16 +62,18 @@ class Report:
 def build(options: PipelineOptions, voice: Voice) -> Report:
     """Build what the manifest asks for, check that nothing was lost, and publish.
 
+    This process is kept to one thread a library, as the workers are (`one_thread`).
+
     Raises:
         Unusable: if the manifest can't be read, or names no front.
         Lost: if a runner lost work.
     """
+    one_thread()
     ours = options.view_as(CityOptions)
     store, shard = Store(ours.city), part(ours.shard)
-    found = manifest.read(store)
+    found = manifest.rewrite(store, manifest.read(store))
     for warning in found.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
-    manifest.rewrite(store, found)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORK.values():
         models.read(network)  # a spoiled file is told here, not by every photo
@@ -88,13 +90,17 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
         blocks=len(todo.blocks),
     )
     began = time.time()
+    note(store, run, options, began)  # a folder that can't be written to is told now
     with Watch(store, bench.versions, len(todo.photos), voice):
         result = launched(options, todo, found, bench, run)
     check(store, run, todo)
-    note(store, run, options, began, result)
+    note(store, run, options, began, stages(result))
     report = reported(store, run, todo)
-    if shard == (1, 1):
+    if shard == (1, 1) and report.blocks:
         publish(store, run, bench.versions, found.rows, title=found.title)
+        if "://" in store.root:
+            words = f"no site was written: build {store.root} where it is mounted"
+            voice.say("warning", f"warning: {words}", warning=words)
     return report
 
 
@@ -136,11 +142,11 @@ def check(store: Store, run: str, todo: Plan) -> None:
     Raises:
         Lost: if one was neither.
     """
-    rejected = {row["key"] for row in runs.read_table(store, run, "rejections")}
-    facades = {row["name"] for row in runs.read_table(store, run, "facades")}
-    blocks = {row["block"] for row in runs.read_table(store, run, "blocks")}
-    lost = [ref.name for ref in todo.photos if ref.name not in facades | rejected]
-    lost += [task.block for task in todo.blocks if task.block not in blocks | rejected]
+    told = set(runs.read_column(store, run, "rejections", "key"))
+    photos = told.union(runs.read_column(store, run, "facades", "name"))
+    blocks = told.union(runs.read_column(store, run, "blocks", "block"))
+    lost = [ref.name for ref in todo.photos if ref.name not in photos]
+    lost += [task.block for task in todo.blocks if task.block not in blocks]
     if lost:
         raise Lost(
             f"the runner lost {len(lost)} photos or blocks, {lost[0]} first: "
@@ -150,17 +156,17 @@ def check(store: Store, run: str, todo: Plan) -> None:
 
 def reported(store: Store, run: str, todo: Plan) -> Report:
     """Sum up a run from its tables."""
-    facades = runs.read_table(store, run, "facades")
-    seen = {row["name"] for row in facades}
-    blocks = runs.read_table(store, run, "blocks")
+    facades = runs.read_column(store, run, "facades", "name")
+    seen = set(facades)
+    buildings = runs.read_column(store, run, "blocks", "buildings")
     return Report(
         run=run,
         photos=len(todo.photos),
         rejected_photos=sum(ref.name not in seen for ref in todo.photos),
         facades=len(facades),
-        blocks=len(blocks),
-        buildings=sum(row["buildings"] for row in blocks),
-        assumed=sum(row["assumed"] for row in blocks),
+        blocks=len(buildings),
+        buildings=sum(buildings),
+        assumed=sum(runs.read_column(store, run, "blocks", "assumed")),
         rejections=tuple(runs.read_table(store, run, "rejections")),
     )
 
@@ -170,17 +176,20 @@ def note(
     run: str,
     options: PipelineOptions,
     began: float,
-    result: PipelineResult,
+    done: dict[str, dict[str, int]] | None = None,
 ) -> None:
-    """Write when the run was and what it took: the only file with clock times."""
+    """Write when the run was and what it took: the only file with clock times.
+
+    Until the run is done it tells only when it began.
+    """
     given = options.get_all_options(drop_default=True)
-    told = {
+    told: dict[str, Any] = {
         "run": run,
         "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
-        "seconds": round(time.time() - began, 1),
-        "stages": stages(result),
         "options": {name: str(value) for name, value in given.items()},
     }
+    if done is not None:
+        told |= {"seconds": round(time.time() - began, 1), "stages": done}
     text = json.dumps(told, indent=1, sort_keys=True) + "\n"
     store.write_bytes(f"runs/{run}/run.json", text.encode())
 

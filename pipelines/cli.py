@@ -164,7 +164,11 @@ def build_command(
     models: ModelsFolder = None,
     max_rejected: Annotated[
         float,
-        typer.Option(help="Share of photos that may give nothing; above it, exit 3."),
+        typer.Option(
+            min=0,
+            max=1,
+            help="Share of photos that may give nothing; above it, exit 3.",
+        ),
     ] = 0.5,
     json_lines: JsonLines = False,
 ) -> None:
@@ -197,7 +201,7 @@ def build_command(
     except OSError as problem:
         raise unwritable(city, problem) from problem
     summed(report, voice)
-    if report.rejected_share > max_rejected:
+    if report.rejected_share > max_rejected or not (report.blocks or shard):
         raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
@@ -212,12 +216,16 @@ def view_command(
     browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
 ) -> None:
     """Serve the city to this machine alone and open it in a browser."""
-    from pipelines.view import NoSiteError, view
+    from pipelines.view import NoSiteError, site_of, view
 
     try:
-        view(city, port=port, browser=browser)
+        site = site_of(city)
     except NoSiteError as problem:
         raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise fail(f"{city}: {problem.strerror}; name a city folder") from problem
+    try:
+        view(site, port=port, browser=browser)
     except OSError as problem:
         raise fail(f"port {port}: {problem.strerror}; take another") from problem
 
@@ -263,7 +271,10 @@ def demo_command(
             voice.say("painted", words, done=done, whole=whole)
 
     workers = [f"--direct_num_workers={min(os.cpu_count() or 1, MOST_WORKERS)}"]
-    chosen = options(str(folder), beam=context.args or workers)
+    try:
+        chosen = options(str(folder), beam=context.args or workers)
+    except ValueError as problem:
+        raise typer.BadParameter(str(problem)) from problem
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
         index(photos, listed, str(folder), credit=CREDIT, title=TITLE)

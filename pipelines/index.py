@@ -14,7 +14,7 @@ from nostalgin_core.catalogue import Catalogue
 from nostalgin_core.entry import Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
 from pipelines import comma, manifest
-from pipelines.store import Store
+from pipelines.store import Store, textual
 from pipelines.title import cleaned
 
 SUFFIXES: Final = (
@@ -138,11 +138,6 @@ def spelt(names: Sequence[str]) -> tuple[list[str], list[Rejection]]:
     if not kept:
         raise Nothing(f"{rejections[0].key}: {rejections[0].reason}; rename the files")
     return kept, rejections
-
-
-def textual(name: str) -> bool:
-    """Tell whether a file's name is text; a file system takes any bytes."""
-    return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
 def from_csv(path: Path) -> Catalogue:

@@ -96,13 +96,17 @@ def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
     store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
 
 
-def rewrite(store: Store, found: Manifest) -> None:
-    """Write a manifest that was mended by hand anew, in both forms.
+def rewrite(store: Store, found: Manifest) -> Manifest:
+    """Write a manifest that was mended by hand anew, in both forms, and read it.
 
-    While a row of it is rejected it is left as it is: that row is still to be mended.
+    Rows are put in order again, so that those written are numbered otherwise than
+    those read. While a row is rejected the manifest is left as it is: that row is still
+    to be mended.
     """
-    if found.mended and not found.rejections:
-        write(store, [typed(row) for row in found.rows], title=found.title)
+    if not found.mended or found.rejections:
+        return found
+    write(store, [typed(row) for row in found.rows], title=found.title)
+    return read(store)
 
 
 def typed(row: Row) -> dict[str, Any]:

@@ -2,14 +2,14 @@
 
 import argparse
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 from apache_beam.options.pipeline_options import (
     DirectOptions,
     PipelineOptions,
     StandardOptions,
 )
-from apache_beam.runners import create_runner
+from apache_beam.runners.runner import create_runner
 
 OURS: Final = ("--city", "--models", "--shard")
 EMBEDDED: Final = "FnApiRunner"  # Beam's own runner in this process
@@ -72,7 +72,7 @@ def known(runner: str, beam: Sequence[str]) -> None:
         raise ValueError(f"--runner {runner}: {problem}") from problem
     if runner != EMBEDDED:
         return
-    parser = argparse.ArgumentParser(
+    parser: Any = argparse.ArgumentParser(
         add_help=False, allow_abbrev=False, conflict_handler="resolve"
     )
     for kind in PipelineOptions.__subclasses__():

@@ -23,14 +23,13 @@ SITE: Final = "site"
 def publish(
     store: Store, run: str, versions: Versions, rows: Sequence[Row], *, title: str = ""
 ) -> None:
-    """Write the site, and only then point at the run.
+    """Write the site of a run that has blocks, and only then point at the run.
 
     Without a `title` the city is called after its folder. A store elsewhere gets the
     pointer alone: `nostalgin build` on a machine that mounts it writes the site.
     """
-    blocks = runs.read_table(store, run, "blocks")
-    if blocks and "://" not in store.root:
-        folder = Path(store.root)
+    if "://" not in store.root:
+        folder, blocks = Path(store.root), runs.read_table(store, run, "blocks")
         site.assemble(
             folder / SITE,
             blocks=models(store, run, blocks, rows),

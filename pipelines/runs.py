@@ -208,3 +208,9 @@ def table_path(run: str, name: str) -> str:
 def read_table(store: Store, run: str, name: str) -> list[dict[str, Any]]:
     """Read a run's table."""
     return store.read_table(table_path(run, name)).to_pylist()
+
+
+def read_column(store: Store, run: str, name: str, column: str) -> list[Any]:
+    """Read one column of a run's table: of a large archive, all is too much."""
+    table = store.read_table(table_path(run, name), [column])
+    return table.column(column).to_pylist()

@@ -11,6 +11,7 @@ and moved into it, so that a reader never meets half a city. What an earlier cit
 behind is removed at the end.
 """
 
+import errno
 import hashlib
 import io
 import json
@@ -175,12 +176,16 @@ class Folder:
         self.written: set[str] = set()
 
     def write(self, name: str, data: bytes) -> None:
-        """Put a file in its place in one move; one that is already the same stays."""
+        """Put a file in its place in one move; one that is already the same stays.
+
+        Raises:
+            OSError: if it can't be written there, or a link leads out of the folder.
+        """
         path = self.root / name
         path.parent.mkdir(exist_ok=True)
         if not path.parent.resolve().is_relative_to(self.root):
-            raise ValueError(
-                f"{path.parent} leads out of {self.root}; remove that link"
+            raise OSError(
+                errno.ELOOP, f"{name} leads out of the site: remove that link"
             )
         self.written.add(name)
         if path.is_file() and not path.is_symlink() and path.read_bytes() == data:

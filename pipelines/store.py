@@ -45,6 +45,11 @@ def parquet_bytes(table: pa.Table) -> bytes:
     return sink.getvalue()
 
 
+def textual(name: str) -> bool:
+    """Tell whether a file's name is text; a file system takes any bytes."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
 @dataclass(frozen=True)
 class Store:
     """A city folder, on this machine or wherever Arrow's file systems reach."""
@@ -55,8 +60,11 @@ class Store:
         """Find the file system.
 
         Raises:
-            OSError: if the URI names none.
+            OSError: if the URI names none, or is no text.
         """
+        if not textual(self.root):
+            shown = os.fsencode(self.root).decode(errors="backslashreplace")
+            raise OSError(errno.EILSEQ, f"{shown} is not UTF-8", self.root)
         local = "://" not in self.root
         where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
         try:
@@ -104,12 +112,18 @@ class Store:
             return pq.ParquetFile(file).read(None if columns is None else list(columns))
 
     def verdict(self, name: str) -> Rejection | bool:
-        """Tell what an artifact holds: True if made, its rejection, False if absent."""
+        """Tell what an artifact holds: True if made, its rejection, False if absent.
+
+        One that a power cut left empty or cut short is as good as absent.
+        """
         if not self.exists(name):
             return False
         system, root = self._open()
         with system.open_input_file(f"{root}/{name}") as file:
-            artifact = pq.ParquetFile(file)
+            try:
+                artifact = pq.ParquetFile(file)
+            except pa.ArrowInvalid:
+                return False
             if (artifact.schema_arrow.metadata or {}).get(VERDICT) != REJECTED:
                 return True
             return tables.records(Rejection, artifact.read())[0]

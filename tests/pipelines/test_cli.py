@@ -26,6 +26,9 @@ def test_help_has_examples(command: str) -> None:
 def test_wrong_usage_ends_with_2() -> None:
     assert nostalgin("explain").exit_code == 2
     assert nostalgin("build", "city", "--shard", "9/3").exit_code == 2
+    assert nostalgin("build", "city", "--max-rejected", "2").exit_code == 2
+    assert nostalgin("build", "city", "another-city").exit_code == 2
+    assert nostalgin("demo", "--shard", "1/2").exit_code == 2
     assert nostalgin("no-such-command").exit_code == 2
 
 
@@ -35,6 +38,7 @@ def test_wrong_usage_ends_with_2() -> None:
         (["index", "nowhere", "-o", "city"], "nowhere is no folder"),
         (["build", "nowhere"], "nostalgin index"),
         (["view", "nowhere"], "nostalgin build"),
+        (["view", "x" * 300], "name a city folder"),
         (["explain", "nowhere.jpg", "-o", "out"], "nowhere.jpg"),
     ],
 )
@@ -99,6 +103,27 @@ def test_a_manifest_that_names_nothing_to_build_says_why(
     assert "names no front to build" in result.output
     assert words in result.output
     assert not (tmp_path / "CURRENT").exists()
+
+
+def test_a_run_that_can_not_be_written_is_told_before_the_work(tmp_path: Path) -> None:
+    city = painted.write_city(tmp_path)
+    (city / "runs").write_text("in the way")
+    result = nostalgin("build", city, "--models", tmp_path / "models")
+    assert result.exit_code == 1
+    assert str(city) in result.output.replace("\n", "")
+    assert "Traceback" not in result.output
+    assert not (city / "artifacts").exists()
+
+
+def test_a_build_of_which_no_block_comes_points_at_no_run(tmp_path: Path) -> None:
+    city = painted.write_city(tmp_path)
+    for name in ("5_1.png", "5_2.jpg", "5_2a.png", "6_1.png"):
+        (tmp_path / "photos" / name).write_bytes(b"")
+    (city / "artifacts").mkdir()
+    (city / "artifacts" / "block").write_text("in the way")
+    words = ["build", city, "--models", tmp_path / "models", "--max-rejected", "1"]
+    assert nostalgin(*words).exit_code == 3
+    assert not (city / "CURRENT").exists()
 
 
 def test_a_demo_that_can_not_be_written_is_named(tmp_path: Path) -> None:

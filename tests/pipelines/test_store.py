@@ -52,6 +52,19 @@ def test_the_same_rows_give_the_same_bytes(store: Store) -> None:
     assert parquet_bytes(ROWS) == parquet_bytes(ROWS)
 
 
+@pytest.mark.parametrize("kept", [0, 4, 100])
+def test_an_artifact_that_was_cut_short_is_made_again(store: Store, kept: int) -> None:
+    store.keep("a.parquet", ROWS)
+    path = Path(store.root) / "a.parquet"
+    path.write_bytes(path.read_bytes()[:kept])
+    assert store.verdict("a.parquet") is False
+
+
+def test_a_folder_whose_name_is_no_text_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="not UTF-8"):
+        Store(f"{tmp_path}/\udcff").write_bytes("a", b"1")
+
+
 def test_nothing_half_written_is_left(store: Store) -> None:
     store.keep("deep/down/a.parquet", ROWS)
     assert list(files(store)) == ["deep/down/a.parquet"]
