@@ -8,7 +8,7 @@ from typing import Final
 
 NOTHING: Final = 0
 PHOTOGRAPHED: Final = 1
-SOFT_EDGE: Final = 2  # photographed, but mixed with what stands before or behind it
+SOFT_EDGE: Final = 2  # photographed, mixed with what is before or behind, or its fill
 INPAINTED: Final = 3  # hidden in the photo, filled by the inpainter
 BEYOND_FRAME: Final = 4  # outside the photo's exposed frame, filled
 COPIED: Final = 5  # copied from another side of the building

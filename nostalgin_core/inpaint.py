@@ -1,8 +1,9 @@
 """Fill what people, cars and posts hid, and what lies beyond the photograph's frame.
 
-Exactly the texels that the evidence map calls inpainted or beyond the frame are
-filled. Nothing that a camera saw is changed, bit for bit. What is not the facade at
-all, as the sky beside a gable, is hidden from the network, so that it can't bleed in.
+The texels that the evidence map calls inpainted or beyond the frame are filled, and
+the fill goes on under the soft edges round them (`rim`). Nothing that is marked as
+photographed is changed, bit for bit. What is not the facade at all, as the sky beside
+a gable, is hidden from the network, so that it can't bleed in.
 
 The hole is first filled by a guess, made of what repeats on the front
 (`repetition.guess`); the network then looks at it in slices (`slices`) and mends it.
@@ -20,6 +21,7 @@ from nostalgin_core import evidence
 from nostalgin_core.arrays import EvidenceMap, Gray, Mask
 from nostalgin_core.records import Box, Elevation
 from nostalgin_core.repetition import guess
+from nostalgin_core.rim import kept, marked, rim, soft
 from nostalgin_core.slices import CHUNK_PX, CONTEXT_PX, Slice, share, slices
 
 Network = Callable[..., tuple[Float32[np.ndarray, "1 1 h w"], ...]]
@@ -31,7 +33,6 @@ SmallerMask = Bool[np.ndarray, "h2 w2"]
 MULTIPLE = 8  # the network's sizes
 GUESSED_PX = 2_000_000  # larger images are guessed at this size, to bound the memory
 LOOKED_PX = 160_000  # and the network looks at them at this one, as it learnt
-HALO_PX = 8  # a soft edge this near the hole is mixed with what hides the front
 
 
 def holes(marks: EvidenceMap) -> Mask:
@@ -45,9 +46,7 @@ def unknown(marks: EvidenceMap) -> Mask:
     Beside the hole and what is no facade, these are the soft edges round the hole.
     """
     hole = holes(marks)
-    near = cv2.dilate(hole.astype(np.uint8), np.ones((2 * HALO_PX + 1,) * 2, np.uint8))
-    soft = (marks == evidence.SOFT_EDGE) & (near > 0)
-    return hole | soft | (marks == evidence.NOTHING)
+    return hole | soft(marks, hole) | (marks == evidence.NOTHING)
 
 
 def _smaller(image: Gray, hidden: Mask, largest: int) -> tuple[Smaller, SmallerMask]:
@@ -151,28 +150,35 @@ def _filled(
     The network learnt on fronts of a few hundred texels, so it is shown a larger one
     at that size, and what it adds to the guess is enlarged.
     """
-    image, hole = elevation.image, holes(elevation.evidence)
+    image, marks = elevation.image, elevation.evidence
+    hole = holes(marks)
     if not hole.any():
         return elevation
-    hidden = unknown(elevation.evidence)
+    edge = rim(marks, hole)
+    wanted, hidden = hole | edge, unknown(marks)
     guessed = _guess(image, hidden)
     small, unseen = _smaller(image, hidden, LOOKED_PX)
     if small.shape == image.shape:
-        added = _stitched(image, hidden, guessed, cut(hole), network)
+        added = _stitched(image, hidden, guessed, cut(wanted), network)
     else:
         size = small.shape[::-1]
         start = cv2.resize(guessed, size, interpolation=cv2.INTER_AREA)
-        part = cv2.resize(hole.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
+        part = cv2.resize(
+            wanted.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST
+        )
         added = _stitched(small, unseen, start, cut(unseen & (part > 0)), network)
         added = cv2.resize(added, image.shape[::-1], interpolation=cv2.INTER_LINEAR)
     out = image.copy()
-    out[hole] = _gray(guessed[hole] + added[hole])
-    return replace(elevation, image=out)
+    out[wanted] = _gray(guessed[wanted] + added[wanted])
+    share = kept(elevation.alpha[edge])
+    out[edge] = _gray(share * image[edge] + (1 - share) * out[edge])
+    return replace(elevation, image=out, evidence=marked(marks, edge, elevation.alpha))
 
 
 def inpaint(elevation: Elevation, network: Network) -> Elevation:
     """Fill an elevation as the pipeline does: slice by slice.
 
-    The evidence map already says what is filled, and stays as it is.
+    The evidence map already says what is filled; soft edges round it that are mostly
+    filled as well are marked so, too.
     """
     return low_memory(elevation, network)

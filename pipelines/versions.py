@@ -24,7 +24,7 @@ CODE: Final = {
     "segment": 5,
     "matte": 5,
     "rectify": 5,
-    "inpaint": 4,
+    "inpaint": 5,
     "block": 2,
     "thumbnail": 1,
 }

@@ -60,10 +60,11 @@ def test_nothing_photographed_is_ever_changed() -> None:
     given = elevation(image, marks)
     for fill in (inpaint, whole, low_memory):
         made = fill(given, vain)
-        kept = ~holes(marks)
-        assert (made.image[kept] == given.image[kept]).all()
-        assert (made.image[~kept] == 255).all()
-        assert (made.evidence == marks).all()
+        filled = holes(made.evidence)
+        assert (made.image[~filled] == given.image[~filled]).all()
+        assert (made.image[filled] == 255).all()
+        assert (marks[made.evidence != marks] == evidence.SOFT_EDGE).all()
+        assert filled[holes(marks)].all()
 
 
 def test_an_elevation_without_a_hole_is_returned_as_it_is() -> None:
@@ -178,9 +179,9 @@ def test_memory_beyond_the_guess_grows_by_some_bytes_a_texel() -> None:
 
 def test_soft_edges_beside_the_hole_are_not_looked_at() -> None:
     image = np.full((80, 80), 100, np.uint8)
-    image[39:42] = 255  # the rim of a white hat
-    marks = marked(80, 80, Box(0, 42, 80, 80))
-    marks[39:42] = evidence.SOFT_EDGE
+    image[38:41] = 255  # the rim of a white awning; above the ground floor
+    marks = marked(80, 80, Box(0, 0, 80, 38))
+    marks[38:41] = evidence.SOFT_EDGE
     given = elevation(image, marks)
     made = inpaint(replace(given), obedient).image
     assert (np.abs(made[marks == evidence.INPAINTED].astype(int) - 100) <= 1).all()
