@@ -4,11 +4,15 @@ Each subcommand prints one report, as tables for people or, with `--json`, as JS
 What is measured is told in the module of the same name beside this one.
 """
 
+import contextlib
 import json
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+
+from pipelines.failure import fail
 
 app = typer.Typer(
     help="Measure a stage against labelled data.",
@@ -17,9 +21,44 @@ app = typer.Typer(
 )
 
 
+ModelsFolder = Annotated[
+    Path | None, typer.Option("--models", help="Folder with other networks.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
 @app.callback()
 def evaluate() -> None:
     """Measure a stage against labelled data."""
+
+
+@contextlib.contextmanager
+def measuring() -> Iterator[None]:
+    """Keep to one thread, so that CPU seconds compare; tell what can't be measured."""
+    from pipelines.models import Unlocked, one_thread
+
+    one_thread()
+    from pipelines.evaluate import Unmeasurable
+
+    try:
+        yield
+    except (Unmeasurable, Unlocked) as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        words = f"{problem.filename}: {problem.strerror}"
+        raise fail(f"{words}; name folders that are there and free") from problem
+
+
+def network(models: Path | None, name: str) -> Any:
+    """Load a network, from the package unless another folder is named."""
+    from pipelines import models as shelf
+
+    return shelf.Models(str(models or shelf.PACKAGED)).load(name)
+
+
+def tell(report: Any, text: str, *, as_json: bool) -> None:
+    """Print a report."""
+    typer.echo(json.dumps(report, indent=1) if as_json else text)
 
 
 @app.command("segmentation")
@@ -27,29 +66,18 @@ def segmentation_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/ and labels/.")],
     *,
     block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
-    models: Annotated[
-        Path | None, typer.Option(help="Folder with other networks.")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    models: ModelsFolder = None,
+    as_json: AsJson = False,
 ) -> None:
     """Measure how well fronts and what hides them are found: the paper's table 1."""
-    from pipelines import models as shelf
+    with measuring():
+        from pipelines.evaluate import labels
 
-    shelf.one_thread()
-    from pipelines.evaluate import Unmeasurable, labels
-
-    try:
         labelled = labels.pairs(folder, block=block)
-        network = shelf.Models(str(models or shelf.PACKAGED)).load("segment")
         from pipelines.evaluate import segmentation, segmentation_table
 
-        report = segmentation.evaluate(labelled, network)
-    except (Unmeasurable, shelf.Unlocked) as problem:
-        typer.secho(f"error: {problem}", fg="red", err=True)
-        raise typer.Exit(1) from problem
-    typer.echo(
-        json.dumps(report, indent=1) if as_json else segmentation_table.text(report)
-    )
+        report = segmentation.evaluate(labelled, network(models, "segment"))
+    tell(report, segmentation_table.text(report), as_json=as_json)
 
 
 RECTIFICATION_EXAMPLES = """
@@ -88,15 +116,12 @@ def rectification_command(
     pictures: Annotated[
         Path | None, typer.Option(help="Folder for pictures of all detectors' lines.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Measure how well fronts are straightened, and the paper's table 2."""
-    from pipelines import models as shelf
+    with measuring():
+        from pipelines.evaluate import rectification, rectification_table
 
-    shelf.one_thread()
-    from pipelines.evaluate import Unmeasurable, rectification, rectification_table
-
-    try:
         report = rectification.evaluate(
             data,
             parts=tuple(parts.split(",")) if parts is not None else None,
@@ -107,12 +132,7 @@ def rectification_command(
             sheets=sheet,
             drawn=pictures,
         )
-    except Unmeasurable as problem:
-        typer.secho(f"error: {problem}", fg="red", err=True)
-        raise typer.Exit(1) from problem
-    typer.echo(
-        json.dumps(report, indent=1) if as_json else rectification_table.text(report)
-    )
+    tell(report, rectification_table.text(report), as_json=as_json)
 
 
 INPAINTING_EXAMPLES = """
@@ -142,27 +162,18 @@ def inpainting_command(
     most: Annotated[
         int | None, typer.Option(min=1, help="How many pictures at most.")
     ] = None,
-    models: Annotated[
-        Path | None, typer.Option(help="Folder with other networks.")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    models: ModelsFolder = None,
+    as_json: AsJson = False,
 ) -> None:
     """Measure how well holes are filled: the paper's table 3."""
-    from pipelines import models as shelf
+    with measuring():
+        from pipelines.evaluate import inpainting
 
-    shelf.one_thread()
-    from pipelines.evaluate import Unmeasurable, inpainting
-
-    try:
-        network = shelf.Models(str(models or shelf.PACKAGED)).load("inpaint")
         report = inpainting.evaluate(
             folder,
-            network,
+            network(models, "inpaint"),
             wanted=methods,
             holes=None if holes is None else (holes,),
             most=most,
         )
-    except (Unmeasurable, shelf.Unlocked) as problem:
-        typer.secho(f"error: {problem}", fg="red", err=True)
-        raise typer.Exit(1) from problem
-    typer.echo(json.dumps(report, indent=1) if as_json else inpainting.text(report))
+    tell(report, inpainting.text(report), as_json=as_json)

@@ -72,11 +72,25 @@ def read(file: Path) -> dict[str, Any]:
     try:
         label = json.loads(file.read_text(encoding="utf-8"))
         objects = label["objects"]
-    except (json.JSONDecodeError, KeyError, TypeError) as problem:
+        for one in objects:
+            _check(one)
+    except (ValueError, KeyError, TypeError) as problem:
         raise Unmeasurable(
-            f"{file} is no label ({problem}): it must be JSON with `objects`"
+            f"{file} is no label ({problem!r}): it must be JSON with `objects`, each "
+            "with a `category` and a `polygon`"
         ) from problem
     return {"id": file.stem} | label | {"objects": objects}
+
+
+def _check(one: dict[str, Any]) -> None:
+    """Insist on an object's category and outline.
+
+    Raises:
+        KeyError, TypeError, ValueError: if one is missing, or something else.
+    """
+    if not isinstance(one["category"], str):
+        raise TypeError(f"category is {one['category']!r}")
+    np.array(one["polygon"], np.float64).reshape(-1, 2)
 
 
 def _photo_of(label: Path, photos: list[Path]) -> Path:
