@@ -1,12 +1,13 @@
-"""A hole punched into a negative prints as a black disc, and hides what lay there.
+"""A punched hole is a black or white disc, and hides what lay there.
 
-Archives cancelled negatives with a punch. Nothing else in a street is so large, so
-black, so evenly round and so sharply cut: a disc fills its smallest enclosing circle,
-and all round it the photo is lighter. On 363 labelled photographs six holes filled 0.95
-or more of their circles; of all other things as large and as black, none filled 0.80.
+Archives cancelled negatives with a punch; in a print the hole is white. Nothing else in
+a street is so large, so extreme in tone, so evenly round and so sharply cut: a disc
+fills its smallest enclosing circle, and all round it the photo is of another tone. On
+363 labelled photographs six black holes filled 0.95 or more of their circles; of all
+else as large and as black none filled 0.80, and of all as white none 0.65.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import cv2
@@ -16,32 +17,42 @@ from nostalgin_core.arrays import Gray, Mask
 from nostalgin_core.records import Box, Instance, Photo
 
 BLACK: Final = 24  # scanned film is not quite black, nor is a watermark on it
-LIGHTER: Final = 30
+WHITE: Final = 250
+OTHER: Final = 30  # levels, by which what lies round a hole differs
 DISC: Final = 0.88  # of the enclosing circle; real ones fill 0.95 or more
-FREE: Final = 0.9  # of the ring round it must be lighter
+FREE: Final = 0.9  # of the ring round it must differ
 SMALLEST: Final = 0.004  # of the frame: 45 px across in 560 x 840
 LARGEST: Final = 0.06
 RING_PX: Final = (4.0, 8.0)  # beyond the blurred edge
 EDGE_PX: Final = 2  # the blurred edge belongs to the hole
+REACH_PX: Final = 3  # of the known tones that a healed pixel is made of
 
 
 def punches(photo: Photo) -> tuple[Instance, ...]:
     """Return the holes punched into a photo, as things of the category other."""
     x0, y0, x1, y1 = photo.frame
     image = photo.image[y0:y1, x0:x1]
-    black = (image <= BLACK).astype(np.uint8)
-    if np.count_nonzero(black) < SMALLEST * black.size:
-        return ()
-    # Letters of a watermark are closed; what hangs on a disc by a thread is cut off.
-    black = cv2.morphologyEx(black, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-    across = max(3, round(0.03 * min(image.shape)) | 1)
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across))
-    spots = _pieces(cv2.morphologyEx(black, cv2.MORPH_OPEN, kernel))
+    tones = (
+        (image <= BLACK, image > BLACK + OTHER),
+        (image >= WHITE, image < WHITE - OTHER),
+    )
     return tuple(
         _instance(spot, photo.frame)
-        for spot in spots
-        if roundness(spot) >= DISC and _set_off(spot, image) >= FREE
+        for tone, other in tones
+        for spot in _spots(tone)
+        if roundness(spot) >= DISC and _set_off(spot, other) >= FREE
     )
+
+
+def healed(photo: Photo, holes: Sequence[Instance]) -> Gray:
+    """Fill holes with the tones round them: a network that sees them loses fronts."""
+    if not holes:
+        return photo.image
+    lost = np.zeros(photo.image.shape, np.uint8)
+    for hole in holes:
+        x0, y0, x1, y1 = hole.box
+        lost[y0:y1, x0:x1] |= (hole.probability > 0.5).astype(np.uint8)
+    return cv2.inpaint(photo.image, lost, REACH_PX, cv2.INPAINT_TELEA)
 
 
 def roundness(spot: Mask) -> float:
@@ -50,19 +61,27 @@ def roundness(spot: Mask) -> float:
     return float(np.count_nonzero(spot) / max(1.0, np.pi * radius**2))
 
 
-def _pieces(black: np.ndarray) -> Iterator[Mask]:
-    """Yield the connected pieces that have a punch's size."""
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(black)
+def _spots(tone: Mask) -> Iterator[Mask]:
+    """Yield the connected pieces of one tone that have a punch's size."""
+    if np.count_nonzero(tone) < SMALLEST * tone.size:
+        return
+    # Letters of a watermark are closed; what hangs on a disc by a thread is cut off.
+    cells = tone.astype(np.uint8)
+    cells = cv2.morphologyEx(cells, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    across = max(3, round(0.03 * min(tone.shape)) | 1)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (across, across))
+    cells = cv2.morphologyEx(cells, cv2.MORPH_OPEN, kernel)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(cells)
     for i in range(1, len(stats)):
-        if SMALLEST <= stats[i, cv2.CC_STAT_AREA] / black.size <= LARGEST:
+        if SMALLEST <= stats[i, cv2.CC_STAT_AREA] / tone.size <= LARGEST:
             yield labels == i
 
 
-def _set_off(spot: Mask, image: Gray) -> float:
-    """Return the share of the ring round a spot that is lighter."""
+def _set_off(spot: Mask, other: Mask) -> float:
+    """Return the share of the ring round a spot that is of another tone."""
     away = cv2.distanceTransform((~spot).astype(np.uint8), cv2.DIST_L2, 5)
     ring = (away > RING_PX[0]) & (away <= RING_PX[1])
-    return float(np.mean(image[ring] > BLACK + LIGHTER)) if ring.any() else 0.0
+    return float(np.mean(other[ring])) if ring.any() else 0.0
 
 
 def _instance(spot: Mask, frame: Box) -> Instance:

@@ -17,7 +17,7 @@ from jaxtyping import Float, Float32, Int
 from nostalgin_core.arrays import Gray, Probability
 from nostalgin_core.flare import flares
 from nostalgin_core.hiding import hiding
-from nostalgin_core.punch import punches
+from nostalgin_core.punch import healed, punches
 from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
 
 CATEGORIES: tuple[Category, ...] = get_args(Category)
@@ -58,9 +58,12 @@ def everything(
     short_px: int = 416,
     long_px: int = 1344,
 ) -> tuple[Instance, ...]:
-    """Place all that the network gives a score of `least`, surest first."""
+    """Place all that the network gives a score of `least`, surest first.
+
+    It is shown the photo with punched holes healed.
+    """
     x0, y0, x1, y1 = photo.frame
-    frame = photo.image[y0:y1, x0:x1]
+    frame = healed(photo, punches(photo))[y0:y1, x0:x1]
     gray = prepared(frame, short_px=short_px, long_px=long_px)
     boxes, labels, scores, masks = network(gray[None, None])
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)

@@ -4,7 +4,7 @@ import pytest
 
 from nostalgin_core import photo
 from nostalgin_core.measure_segmentation import overlap
-from nostalgin_core.punch import punches
+from nostalgin_core.punch import healed, punches
 from nostalgin_core.records import Box, Photo, Rejection
 from tests.data import DATA, needs_data
 
@@ -27,14 +27,15 @@ def _street() -> np.ndarray:
     return np.clip(image, 0, 255).astype(np.uint8)
 
 
+@pytest.mark.parametrize(("level", "letter"), [(2, 90), (253, 200)])
 @pytest.mark.parametrize("radius", [18, 30])
 @pytest.mark.parametrize("centre", [(150, 60), (200, 330)])
-def test_a_black_disc_is_a_hole_and_covered_whole(
-    radius: int, centre: tuple[int, int]
+def test_a_black_or_white_disc_is_a_hole_and_covered_whole(
+    level: int, letter: int, radius: int, centre: tuple[int, int]
 ) -> None:
     disc = cv2.circle(np.zeros((H, W), np.uint8), centre, radius, 1, -1)
-    image = np.where(disc > 0, np.uint8(2), _street())
-    cv2.putText(image, "NYC", centre, cv2.FONT_HERSHEY_PLAIN, 0.8, 90)
+    image = np.where(disc > 0, np.uint8(level), _street())
+    cv2.putText(image, "NYC", centre, cv2.FONT_HERSHEY_PLAIN, 0.8, letter)
     (hole,) = punches(_photo(image))
     assert hole.category == "other"
     x0, y0, x1, y1 = hole.box
@@ -58,6 +59,20 @@ def test_a_disc_that_runs_into_a_shadow_is_left_alone() -> None:
     image = cv2.circle(_street(), (150, 330), 30, 2, -1)
     image[330:380, 100:200] = 2
     assert not punches(_photo(image))
+
+
+def test_a_healed_hole_has_the_tones_round_it_and_the_rest_is_untouched() -> None:
+    disc = cv2.circle(np.zeros((H, W), np.uint8), (200, 330), 30, 1, -1) > 0
+    holed = _photo(np.where(disc, np.uint8(2), _street()))
+    mended = healed(holed, punches(holed))
+    assert abs(float(mended[disc].mean()) - 110) < 8
+    near = cv2.dilate(disc.astype(np.uint8), np.ones((7, 7), np.uint8)) > 0
+    np.testing.assert_array_equal(mended[~near], holed.image[~near])
+
+
+def test_a_photo_without_holes_is_its_own_healed_one() -> None:
+    whole = _photo(_street())
+    assert healed(whole, punches(whole)) is whole.image
 
 
 # Of all 363 labelled photographs these bear a whole punched hole.
