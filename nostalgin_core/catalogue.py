@@ -9,6 +9,7 @@ names it as a spreadsheet counts, header first. What a row's cells say is told i
 """
 
 import re
+import unicodedata
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -174,6 +175,6 @@ def _text(cell: object) -> str:
 
 
 def _path(photo: str) -> str:
-    """Write a photo's path as it is compared."""
-    path = PurePosixPath(photo.replace("\\", "/"))
+    """Write a photo's path as it is compared; some disks part letters and accents."""
+    path = PurePosixPath(unicodedata.normalize("NFC", photo).replace("\\", "/"))
     return (path.parent / path.stem.strip()).as_posix().casefold()

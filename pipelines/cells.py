@@ -90,7 +90,9 @@ def shown(cells: dict[str, Any], name: str) -> str:
 
 def flag(cells: dict[str, Any], name: str) -> bool:
     """Read yes or no."""
-    written = str(cells.get(name) if cells.get(name) is not None else "").lower()
+    written = (
+        str(cells.get(name) if cells.get(name) is not None else "").strip().lower()
+    )
     if written in YES:
         return True
     if written in NO:

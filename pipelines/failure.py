@@ -11,10 +11,17 @@ FAILED: Final = 1
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
 
+def harmless(text: str) -> str:
+    """Spell out letters that a terminal would obey: a file's name may hold any."""
+    return "".join(
+        letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text
+    )
+
+
 def fail(message: str) -> typer.Exit:
     """Say on standard error what went wrong and how to mend it."""
     errors.print("[bold red]error:[/] ", end="")
-    errors.print(message, markup=False)
+    errors.print(harmless(message), markup=False)
     return typer.Exit(FAILED)
 
 

@@ -19,6 +19,7 @@ from pipelines.voice import Voice
 WATCHED: Final = ("segment", "matte", "rectify", "inpaint", "block")
 EVERY_S: Final = 2.0  # a photo takes seconds
 SAY_EVERY_S: Final = 30.0  # without a terminal every line stays
+REST: Final = 20.0  # times as long as a look takes: a store may hold a million files
 
 
 @dataclass
@@ -34,6 +35,7 @@ class Watch:
     voice: Voice
     _stop: threading.Event = field(default_factory=threading.Event)
     _thread: threading.Thread | None = None
+    _look_s: float = 0.0
 
     def __enter__(self) -> Self:
         """Start to watch."""
@@ -54,7 +56,7 @@ class Watch:
             self._thread.join()
 
     def _loop(self) -> None:
-        began, before = time.monotonic(), self.counts()
+        began, before = time.monotonic(), self._looked()
         terminal = self.voice.console.is_terminal and not self.voice.machine
         every = EVERY_S if terminal else SAY_EVERY_S
         tell = self._status if terminal else self._lines
@@ -62,16 +64,25 @@ class Watch:
 
     def _status(self, facts: Callable[[], dict[str, Any]], every: float) -> None:
         with self.voice.console.status("starting") as status:
-            while not self._stop.wait(every):
+            while not self._stopped(every):
                 status.update(self._text(facts()))
 
     def _lines(self, facts: Callable[[], dict[str, Any]], every: float) -> None:
-        while not self._stop.wait(every):
+        while not self._stopped(every):
             now = facts()
             self.voice.say("progress", self._text(now), **now)
 
-    def _facts(self, before: dict[str, int], seconds: float) -> dict[str, Any]:
+    def _stopped(self, every: float) -> bool:
+        return self._stop.wait(max(every, REST * self._look_s))
+
+    def _looked(self) -> dict[str, int]:
+        began = time.monotonic()
         now = self.counts()
+        self._look_s = time.monotonic() - began
+        return now
+
+    def _facts(self, before: dict[str, int], seconds: float) -> dict[str, Any]:
+        now = self._looked()
         new = {stage: now[stage] - before[stage] for stage in WATCHED}
         rate = 60 * new["rectify"] / max(seconds, 1e-9)
         return {

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
 
+from pipelines.failure import harmless
+
 if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.build import Report
 
@@ -24,7 +26,7 @@ class Voice:
         if self.machine:
             print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
         else:
-            self.console.print(text, markup=False, highlight=False)
+            self.console.print(harmless(text), markup=False, highlight=False)
 
 
 def summed(report: "Report", voice: Voice) -> None:

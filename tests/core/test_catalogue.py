@@ -126,6 +126,13 @@ CORNER = {
 }
 
 
+def test_an_accent_may_be_written_as_a_letter_of_its_own() -> None:
+    entries = catalogue.read([PLAIN | {"photo": "caf\u00e9.jpg"}]).entries
+    found, rejections = catalogue.matched(entries, ["cafe\u0301.jpg"])
+    assert list(found) == ["cafe\u0301.jpg"]
+    assert rejections == ()
+
+
 def test_of_two_photos_of_one_name_each_finds_the_row_with_its_folder() -> None:
     rows = [
         PLAIN | {"photo": f"{folder}/12.jpg", "lot": lot}

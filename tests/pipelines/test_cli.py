@@ -77,6 +77,17 @@ def test_a_folder_that_can_not_be_written_is_named(tmp_path: Path) -> None:
     assert "Traceback" not in result.output
 
 
+def test_a_name_that_a_terminal_would_obey_is_spelt_out(tmp_path: Path) -> None:
+    (tmp_path / "list.csv").write_text("photo,block,lot\n5_1.jpg,5,1\n")
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / "\x1b[2J\n.jpg").write_bytes(b"x")
+    words = ["--catalogue", tmp_path / "list.csv", "-o", tmp_path / "city"]
+    result = nostalgin("index", tmp_path / "photos", *words)
+    assert result.exit_code == 0
+    assert "\x1b[2J" not in result.output
+    assert "rejected \\x1b[2J\\n.jpg" in result.output
+
+
 @pytest.mark.parametrize("command", ["index", "build"])
 def test_an_address_that_no_file_system_answers_to_is_named(
     command: str, tmp_path: Path
