@@ -10,9 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import homography
 from nostalgin_core.arrays import Corners, Mask, Matrix3, Points
-from nostalgin_core.records import Box
 
 SPECK_SHARE = 0.02  # parts smaller than this share of the largest don't count
 LEAST_SHARE = 0.25  # of the fullest row: emptier ones at a side are its raggedness
@@ -60,26 +58,6 @@ def bounding(
     if np.any(nearness <= 0):
         return None
     return np.array([x0, y0, x1, y1])
-
-
-def filled(photo_from_plane: Matrix3, points: Points, frame: Box) -> float:
-    """Measure the share of its quad that a hull fills, within the frame.
-
-    Straight fronts are rectangles, so a hull fills nearly all of the quad that runs to
-    its front's own vanishing points; towards others the quad has room to spare. Nothing
-    is filled where the quad degenerates.
-    """
-    bounds = bounding(photo_from_plane, points)
-    if bounds is None:
-        return 0.0
-    corners = homography.apply(photo_from_plane, corners_of(bounds))
-    x0, y0, x1, y1 = frame
-    seen, _ = cv2.intersectConvexConvex(
-        cv2.convexHull(corners.astype(np.float32)),
-        corners_of(np.array([x0, y0, x1, y1], np.float64)).astype(np.float32),
-    )
-    area = cv2.contourArea(points.astype(np.float32))
-    return float(min(1.0, area / seen)) if seen > 0 else 0.0
 
 
 def corners_of(bounds: Float[np.ndarray, "4"]) -> Corners:

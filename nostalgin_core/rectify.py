@@ -23,15 +23,11 @@ from nostalgin_core.arrays import Corners, Matrix3, Points
 from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
 
 STAGE = "rectify"
-CONTRADICTION = "outline contradicts direction"
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
 MOST_SKEWED = 1e9  # condition of a plane seen edge on
 ASPECTS = (0.05, 20.0)
 MOST_UNSURE_DEG = 10.0  # of the horizontal vanishing point: beyond, it is a guess
 MOST_LEANING_DEG = 4.0  # of a side, in 95 of 100 cases: beyond, it isn't straightened
-LEAST_FILLED = 0.85  # of its quad: a front that fills less is doubted, and refused
-CONTRADICTED = 0.05  # if another direction fills so much more of a quad of its own,
-TURN_DEG = 6.0  # trying them in such steps
 WITHIN = 1.96  # standard deviations: 95 of 100 cases
 STEP = 1e-4  # of a parameter, for differences
 MOST_BEYOND = 0.7  # of an elevation outside the frame
@@ -59,18 +55,12 @@ def rectify(
 def _straighten(
     photo: Photo, facade: Facade, oriented: orient.Oriented, rank: int
 ) -> Elevation | Rejection:
-    """Straighten one front; if its own direction leads nowhere, with a neighbour's.
-
-    A front whose own outline contradicts its lines gets no other chance: the street's
-    directions, which come of such lines, were seen to be as wrong.
-    """
+    """Straighten one front; if its own direction leads nowhere, with a neighbour's."""
     method = oriented.methods[rank]
     if method is None:
         return _rejected(photo, facade, "too few lines")
     result = elevation(photo, facade, oriented.world, rank, method)
-    if isinstance(result, Elevation) or method == orient.NEIGHBOUR:
-        return result
-    if result.reason == CONTRADICTION:
+    if result or method == orient.NEIGHBOUR:
         return result
     sides = orient.outline(photo, facade)
     borrowed = orient.borrow(oriented.world, rank, sides)
@@ -94,7 +84,6 @@ def elevation(
         return _rejected(photo, facade, "quad degenerate")
     aspect, corners = bounded
     implausible = _implausible(photo, world, rank, corners, aspect)
-    implausible = implausible or _contradicted(photo, world.parameters, rank, points)
     if implausible is not None:
         return _rejected(photo, facade, *implausible)
     shape = warp.size(corners, aspect)
@@ -142,32 +131,6 @@ def _implausible(
     if not ASPECTS[0] <= aspect <= ASPECTS[1]:
         return "aspect implausible", f"{aspect:.3g}"
     return None
-
-
-def _contradicted(
-    photo: Photo, parameters: Parameters, rank: int, points: Points
-) -> tuple[str, str] | None:
-    """Tell, as a reason and a detail, if an outline speaks for another direction.
-
-    Signs, recesses and neighbours that face the camera give an oblique front lines of
-    another direction than its own. The outline is no line, but it knows better: along
-    the front's own direction it is nearly a rectangle.
-    """
-
-    def filled(theta: float) -> float:
-        plane = _plane(photo, np.array([*parameters[:3], theta]), 0, points)
-        if np.linalg.cond(plane) > MOST_SKEWED:
-            return 0.0
-        return quad.filled(plane, points, photo.frame)
-
-    here = filled(parameters[3 + rank])
-    if here >= LEAST_FILLED:
-        return None
-    turns = parameters[3 + rank] + np.radians(np.arange(TURN_DEG, 180, TURN_DEG))
-    there = max(filled(theta) for theta in turns)
-    if there - here < CONTRADICTED:
-        return None
-    return CONTRADICTION, f"fills {here:.0%}, might {there:.0%}"
 
 
 def _rejected(photo: Photo, facade: Facade, reason: str, detail: str = "") -> Rejection:

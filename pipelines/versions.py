@@ -23,7 +23,7 @@ from pipelines.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 5,
     "matte": 5,
-    "rectify": 5,
+    "rectify": 4,
     "inpaint": 5,
     "block": 2,
     "thumbnail": 1,

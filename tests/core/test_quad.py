@@ -2,7 +2,6 @@ import cv2
 import numpy as np
 
 from nostalgin_core import homography, quad
-from nostalgin_core.records import Box
 
 UNIT = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 TRUE = np.array([[100.0, 80.0], [260.0, 140.0], [280.0, 360.0], [90.0, 380.0]])
@@ -65,20 +64,3 @@ def test_trimming_takes_at_most_its_share() -> None:
 
 def test_an_empty_mask_has_no_hull() -> None:
     assert quad.hull(np.zeros((10, 10), bool)).shape == (0, 2)
-
-
-def test_a_front_fills_its_own_quad_and_no_other() -> None:
-    hull = quad.hull(painted(TRUE))
-    own = homography.between(UNIT, TRUE)
-    frame = Box(0, 0, 360, 480)
-    assert quad.filled(own, hull, frame) > 0.97
-    assert quad.filled(np.eye(3), hull, frame) < 0.85
-
-
-def test_only_what_lies_in_the_frame_has_to_be_filled() -> None:
-    own = homography.between(UNIT, TRUE)
-    frame = Box(0, 0, 180, 480)
-    mask = painted(TRUE)
-    mask[:, 180:] = False
-    assert quad.filled(own, quad.hull(mask), frame) > 0.95
-    assert quad.filled(own, quad.hull(mask), Box(0, 0, 360, 480)) > 0.95

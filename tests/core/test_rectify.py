@@ -180,17 +180,3 @@ def test_a_front_whose_sides_may_lean_is_rejected(
     assert bool(result) == straight
     if isinstance(result, Rejection):
         assert result.reason == "direction unsure"
-
-
-def test_a_front_whose_outline_contradicts_its_direction_is_rejected(
-    corner: Painted,
-) -> None:
-    facade, world = corner.matted.facades[0], known_to(corner, 0.01)
-    reasons = []
-    for turn_deg in (0, 5, -30):
-        parameters = world.parameters.copy()
-        parameters[3] += np.radians(turn_deg)
-        turned = replace(world, parameters=parameters)
-        result = rectify.elevation(corner.photo, facade, turned, 0, orient.BOTH)
-        reasons.append(None if isinstance(result, Elevation) else result.reason)
-    assert reasons == [None, None, "outline contradicts direction"]
