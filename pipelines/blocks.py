@@ -100,11 +100,11 @@ def placed(grouped: tuple[str, dict[str, Iterable[Any]]]) -> list[Placed | Rejec
     (task,) = parts["task"]
     facades = tuple(sorted(parts["facades"], key=order))
     names = {ref.seen.photo: ref.photo.name for ref in reversed(facades)}
-    keys = {ref.photo.name: ref.seen.photo for ref in facades}
+    keys = {(ref.photo.root, ref.photo.name): ref.seen.photo for ref in facades}
     candidates: dict[str, list[str]] = {}
-    for name, front_id in task.photos:
-        if name in keys:
-            candidates.setdefault(keys[name], []).append(front_id)
+    for photo, front_id in task.photos:
+        if photo in keys:
+            candidates.setdefault(keys[photo], []).append(front_id)
     seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
     settled = settle.settle(task.block, task.fronts, candidates, seen)
     rejections = [named(one, names[one.key]) for one in settled.rejections]

@@ -19,7 +19,7 @@ class BlockTask:
 
     block: str
     fronts: tuple[Front, ...]  # in the order of ring and rank
-    photos: tuple[tuple[str, str], ...]  # a photo's name, and a front it may show
+    photos: tuple[tuple[Name, str], ...]  # and a front that each may show
     credit: str
 
     @property
@@ -55,12 +55,15 @@ def plan(rows: Sequence[Row], *, city: str, shard: tuple[int, int] = (1, 1)) -> 
             PhotoRef(root, name, tuple(sorted(set(theirs))))
             for (root, name), theirs in sorted(photos.items())
         ),
-        tuple(block_task(block, theirs) for block, theirs in sorted(blocks.items())),
+        tuple(
+            block_task(block, theirs, city=city)
+            for block, theirs in sorted(blocks.items())
+        ),
         tuple(homeless(row) for row in rows if row.front is None),
     )
 
 
-def block_task(block: str, rows: Sequence[Row]) -> BlockTask:
+def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:
     """Gather one block's fronts; a front in several rows counts once, as first told."""
     fronts: dict[str, Front] = {}
     for row in rows:
@@ -69,7 +72,11 @@ def block_task(block: str, rows: Sequence[Row]) -> BlockTask:
     ordered = sorted(
         fronts.values(), key=lambda one: (one.ring, one.rank, one.front_id)
     )
-    pairs = {(r.photo, r.front.front_id) for r in rows if r.photo and r.front}
+    pairs = {
+        ((rooted(row.root, city), row.photo), row.front.front_id)
+        for row in rows
+        if row.photo and row.front
+    }
     named = sorted({row.credit for row in rows if row.credit})
     return BlockTask(block, tuple(ordered), tuple(sorted(pairs)), "; ".join(named))
 

@@ -12,6 +12,7 @@ import numpy as np
 from nostalgin_core import city
 from pipelines import runs, site
 from pipelines.manifest import Row, natural
+from pipelines.plan import rooted
 from pipelines.store import Store
 from pipelines.title import cleaned, of_folder
 from pipelines.versions import Versions
@@ -45,7 +46,9 @@ def models(
     """Gather the blocks' models, in the order of their numbers."""
     why = reasons(runs.read_table(store, run, "rejections"), rows)
     photos = runs.read_table(store, run, "photos")
-    taken, whose = of_buildings(photos, rows), credits_of(photos, rows)
+    keys = {(row["root"], row["name"]): row["key"] for row in photos}
+    shown = [(row, keys.get((rooted(row.root, store.root), row.photo))) for row in rows]
+    taken, whose = of_buildings(shown), credits_of(shown)
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
     records = [json.loads(row["record"]) for row in ordered]
     moves = places(records, rows)
@@ -56,11 +59,11 @@ def models(
             building["rejections"] += why.get(building["id"], [])
             for photo in building["photos"]:  # it says whose the block's photos are
                 photo["credit"] = whose.get(photo["key"], photo.get("credit", ""))
-            shown = {photo["key"] for photo in building["photos"]}
+            there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo
                 for photo in taken.get(building["id"], [])
-                if photo["key"] not in shown
+                if photo["key"] not in there
             ]
         made.append(
             site.BlockModel(
@@ -95,25 +98,28 @@ def places(records: list[dict[str, Any]], rows: Sequence[Row]) -> dict[str, city
 
 
 def of_buildings(
-    photos: list[dict[str, Any]], rows: Sequence[Row]
+    shown: Sequence[tuple[Row, str | None]],
 ) -> dict[str, list[dict[str, Any]]]:
-    """List all photos of each building: those that it could not use are shown too."""
-    keys = {row["name"]: row["key"] for row in photos}
+    """List all photos of each building: those that it could not use are shown too.
+
+    `shown` gives each row with the key of its photo, if that could be read.
+    """
     told: dict[str, dict[str, dict[str, Any]]] = defaultdict(dict)
-    for row in rows:
-        if row.front is not None and row.photo in keys:
-            photo = {"key": keys[row.photo], "used": False, "caption": row.photo}
+    for row, key in shown:
+        if row.front is not None and key is not None:
+            photo = {"key": key, "used": False, "caption": row.photo}
             building = f"{row.front.block}-{row.front.lot}"
-            told[building][row.photo] = photo | {"credit": row.credit}
+            told[building][key] = photo | {"credit": row.credit}
     return {building: list(own.values()) for building, own in told.items()}
 
 
-def credits_of(photos: list[dict[str, Any]], rows: Sequence[Row]) -> dict[str, str]:
+def credits_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, str]:
     """Tell whom each photo is credited to, by its key."""
     credit: dict[str, str] = {}
-    for row in rows:
-        credit.setdefault(row.photo, row.credit)
-    return {row["key"]: credit[row["name"]] for row in photos if row["name"] in credit}
+    for row, key in shown:
+        if key is not None:
+            credit.setdefault(key, row.credit)
+    return credit
 
 
 def reasons(

@@ -181,6 +181,30 @@ def test_a_manifest_that_was_mended_by_hand_is_built_and_written_anew(
     assert {one["street"] for one in block["buildings"]} == {"Oak Street"}
 
 
+def test_two_folders_may_hold_photos_of_one_name(city: Path, tmp_path: Path) -> None:
+    shutil.copytree(city.parent / "models", tmp_path / "models")
+    other = tmp_path / "city"
+    shutil.copytree(city, other)
+    shutil.copytree(city.parent / "photos", tmp_path / "more")
+    shutil.copy(tmp_path / "more" / "6_1.png", tmp_path / "more" / "5_1.png")
+    rows = pq.read_table(other / manifest.PARQUET).to_pylist()
+    for row in rows:
+        if row["photo"] == "6_1.png":
+            row.update(root="../more", photo="5_1.png", credit="Another archive")
+    manifest.write(Store(str(other)), rows)
+    report = built(other)
+    assert (report.photos, report.rejected_photos, report.assumed) == (4, 0, 1)
+    record = json.loads((other / "site" / "site.json").read_text())
+    named = [
+        photo["credit"]
+        for block in record["blocks"]
+        for building in block["buildings"]
+        for photo in building["photos"]
+        if photo["caption"] == "5_1.png"
+    ]
+    assert sorted(named) == ["", "Another archive"]
+
+
 def test_clock_times_stand_in_one_file_alone(city: Path) -> None:
     run = (city / "CURRENT").read_text().strip()
     told = json.loads((city / "runs" / run / "run.json").read_text())

@@ -37,8 +37,19 @@ def test_each_photo_is_worked_on_once_for_all_its_blocks() -> None:
 def test_each_block_knows_its_fronts_and_who_may_show_them() -> None:
     made = plan(ROWS, city="/city")
     assert [one.block for one in made.blocks] == ["1", "2", "3"]
-    assert made.blocks[1].photos == (("a.jpg", "2-0-0"), ("b.jpg", "2-1-0"))
+    a, b = ("/photos", "a.jpg"), ("/photos", "b.jpg")
+    assert made.blocks[1].photos == ((a, "2-0-0"), (b, "2-1-0"))
     assert made.blocks[2].photos == ()
+
+
+def test_photos_of_one_name_in_two_folders_are_two_photos() -> None:
+    other = replace(row(3, "a.jpg", "1", rank=1), root="more")
+    made = plan([row(2, "a.jpg", "1"), other], city="/city")
+    assert [ref.root for ref in made.photos] == ["/city/more", "/photos"]
+    assert made.blocks[0].photos == (
+        (("/city/more", "a.jpg"), "1-1-0"),
+        (("/photos", "a.jpg"), "1-0-0"),
+    )
 
 
 def test_a_photo_without_a_front_is_rejected_with_its_row() -> None:
