@@ -32,7 +32,7 @@ SmallerMask = Bool[np.ndarray, "h2 w2"]
 
 MULTIPLE = 8  # the network's sizes
 GUESSED_PX = 2_000_000  # larger images are guessed at this size, to bound the memory
-LOOKED_PX = 160_000  # and the network looks at them at this one, as it learnt
+LOOKED_PX = 100_000  # and the network looks at them at this one, as it learnt
 
 
 def holes(marks: EvidenceMap) -> Mask:
