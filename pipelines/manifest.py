@@ -229,8 +229,8 @@ def contradictions(rows: Sequence[Row]) -> list[str]:
                 if getattr(known.front, one.name) != getattr(row.front, one.name)
             ]
             told.append(
-                f"{row.key}: {', '.join(differing)} of front {row.front.front_id} "
-                f"differ from row {known.number}, which counts; mend all its rows"
+                f"{row.key}: {', '.join(differing)} of front {row.front.front_id} not "
+                f"as in row {known.number}, which counts; mend all the front's rows"
             )
     return told
 

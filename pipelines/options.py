@@ -43,7 +43,7 @@ def options(
     ours = dict(zip(OURS, (city, models, shard), strict=True))
     twice = [one for one in beam if one.partition("=")[0] in ours]
     if twice:
-        raise ValueError(f"{twice[0]} is not an option of Beam's: it is given above")
+        raise ValueError(f"{twice[0]}: this command sets it, and Beam takes none")
     found = PipelineOptions([*(f"{name}={ours[name]}" for name in OURS), *beam])
     standard = found.view_as(StandardOptions)
     if standard.runner in ALIASES:
