@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from nostalgin_core.arrays import Gray, Probability
-from nostalgin_core.flare import flares, veils
+from nostalgin_core.flare import flares
 from nostalgin_core.hiding import hiding
 from nostalgin_core.punch import healed, punches
 from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
@@ -60,10 +60,10 @@ def everything(
 ) -> tuple[Instance, ...]:
     """Place all that the network gives a score of `least`, surest first.
 
-    It is shown the photo with punched holes and round flares healed.
+    It is shown the photo with punched holes healed.
     """
     x0, y0, x1, y1 = photo.frame
-    frame = healed(photo, punches(photo) + veils(photo))[y0:y1, x0:x1]
+    frame = healed(photo, punches(photo))[y0:y1, x0:x1]
     gray = prepared(frame, short_px=short_px, long_px=long_px)
     boxes, labels, scores, masks = network(gray[None, None])
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
