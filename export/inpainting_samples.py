@@ -17,6 +17,8 @@ from nostalgin_core.arrays import Gray, Mask
 from nostalgin_core.free_form import free_form_share
 from nostalgin_core.repetition import guess
 
+AT_FOOT = 0.5  # share of holes that are silhouettes at the foot, the harder kind
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sample:
@@ -71,7 +73,7 @@ def draw(
     sheet = pictures[rng.integers(len(pictures))]
     image, known = scaled(sheet, size, rng=rng)
     shape = [min(n, 2 * size) for n in image.shape]
-    at_foot = rng.random() < 0.35
+    at_foot = rng.random() < AT_FOOT
     y = image.shape[0] - shape[0]
     y = y if at_foot else rng.integers(y + 1)
     x = rng.integers(image.shape[1] - shape[1] + 1)

@@ -155,3 +155,24 @@ def view(
         replace(t, rings=tuple(moved(ring) for ring in t.rings)) for t in sample.things
     )
     return Sample(sample.name, np.ascontiguousarray(image), things)
+
+
+def tilted(sample: Sample, rng: np.random.Generator) -> Sample:
+    """Turn a sample by a degree or two and let its walls lean, as cameras do."""
+    height, width = sample.image.shape
+    turn = cv2.getRotationMatrix2D(
+        (width / 2, height / 2), float(rng.normal(0, 1.5)), 1.0
+    )
+    lean = rng.normal(0, 0.03)
+    turn[0] += (0, lean, -lean * height / 2)
+    image = cv2.warpAffine(
+        sample.image, turn, (width, height), borderMode=cv2.BORDER_REPLICATE
+    )
+
+    def moved(ring: Points) -> Points:
+        return ring @ turn[:, :2].T + turn[:, 2]
+
+    things = tuple(
+        replace(t, rings=tuple(moved(ring) for ring in t.rings)) for t in sample.things
+    )
+    return Sample(sample.name, image, things)

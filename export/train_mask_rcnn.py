@@ -20,11 +20,21 @@ import torch
 from torch import Tensor
 
 from export.ahead import ahead
+from export.blemishes import blemished
 from export.copy_paste import Donor, donors, paste
 from export.held_out import as_callable, figures
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.painted_segmentation_data import read_painted
-from export.segmentation_data import UNSCORED, Sample, Truth, read_folder, truth, view
+from export.pseudo_labels import read_pseudo
+from export.segmentation_data import (
+    UNSCORED,
+    Sample,
+    Truth,
+    read_folder,
+    tilted,
+    truth,
+    view,
+)
 from export.wear import wear
 from export.weights import read_weights
 from nostalgin_core.arrays import Gray
@@ -163,7 +173,10 @@ def dressed(
         pool = pools[int(rng.integers(len(pools)))]
         sample = view(pool[int(rng.integers(len(pool)))], rng, short_px=short_px)
         if rng.random() < 0.5:
+            sample = tilted(sample, rng)
+        if rng.random() < 0.5:
             sample = paste(sample, cut, rng)
+        sample = blemished(sample, rng)
         answer = truth(sample)
         if np.isin(answer.labels, wanted).any():
             break
@@ -212,8 +225,12 @@ def main() -> None:
     )
     real = [read_folder(args.data / n) for n in ("taxphotos", "historic_streets")]
     painted = read_painted(args.painted) if args.painted else []
-    # Each pool is drawn evenly: two real photos of either set to one that is painted.
-    pools = [*real, *real, painted] if painted else real
+    pseudo = []
+    if args.pseudo:
+        pseudo = read_pseudo(args.data / "historic_streets/photos", args.pseudo)
+    # Each pool is drawn evenly: two real photos of either set to one that is painted
+    # and two that nobody outlined.
+    pools = [p for p in (*real, *real, painted, pseudo, pseudo) if p]
     judged = read_folder(args.data / "taxphotos", held_out=True)
     cut = donors([s for pool in real for s in pool])
     args.into.mkdir(parents=True, exist_ok=True)
@@ -250,6 +267,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--start", type=Path, required=True, help=".npz or .onnx")
     parser.add_argument("--into", type=Path, required=True, help="logs, checkpoints")
     parser.add_argument("--painted", type=Path, help="folder of painted photos")
+    parser.add_argument("--pseudo", type=Path, help="folder of pseudo labels")
     parser.add_argument("--steps", type=int, default=usual.steps)
     parser.add_argument("--rate", type=float, default=usual.rate)
     parser.add_argument(
