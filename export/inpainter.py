@@ -151,7 +151,8 @@ class Critic(nn.Module):
     """SN-PatchGAN: judge every patch of an image, given where it was filled.
 
     Six convolutions of kernel 5 and stride 2 under spectral normalisation; each
-    feature of the last is one judgement (free-form paper, section 3.3).
+    feature of the last is one judgement (free-form paper, section 3.3), and nothing
+    bends it: a leaky last layer squeezes the verdict "made" to a fifth.
     """
 
     def __init__(self, *, width: int = 32) -> None:
@@ -168,6 +169,7 @@ class Critic(nn.Module):
     def forward(self, image: Image, hole: Image) -> Tensor:
         """Score patches: high is photographed, low is made."""
         x = torch.cat([image, hole], 1)
-        for layer in self.layers:
+        *inner, last = self.layers
+        for layer in inner:
             x = F.leaky_relu(layer(x), 0.2)
-        return x
+        return last(x)
