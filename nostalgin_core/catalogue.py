@@ -75,7 +75,7 @@ def read(
 
     What stands beyond the last column is found under None or no name, as `csv` has it.
     """
-    given = [dict(row) for row in rows]
+    given: list[dict[Any, Any]] = [dict(row) for row in rows]
     listed = [{key: cell for key, cell in row.items() if key} for row in given]
     columns = _columns(listed)
     warnings = [
