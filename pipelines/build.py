@@ -1,6 +1,7 @@
 """One build from its manifest to its published run."""
 
 import json
+import re
 import time
 from collections import Counter
 from collections.abc import Sequence
@@ -22,13 +23,13 @@ from pipelines.progress import Watch
 from pipelines.publish import publish
 from pipelines.runs import WriteTable
 from pipelines.stages import Bench
-from pipelines.store import Store
+from pipelines.store import Store, Unstored
 from pipelines.versions import NETWORK, versions
 from pipelines.voice import Voice
 
 
 class Lost(RuntimeError):  # noqa: N818 - it reads as what it is about
-    """Work that a runner neither did nor rejected."""
+    """Work that a runner neither did nor rejected, or that could not be kept."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ def build(options: PipelineOptions, voice: Voice) -> Report:
 
     Raises:
         Unusable: if the manifest can't be read, or names no front.
-        Lost: if a runner lost work.
+        Lost: if a runner lost work, or what it made could not be kept.
     """
     one_thread()
     ours = options.view_as(CityOptions)
@@ -114,13 +115,33 @@ def nothing(store: Store, rejections: Sequence[Rejection]) -> str:
 def launched(
     options: PipelineOptions, todo: Plan, found: Manifest, bench: Bench, run: str
 ) -> PipelineResult:
-    """Run the pipeline to its end."""
+    """Run the pipeline to its end.
+
+    Raises:
+        Lost: if what was made could not be kept.
+    """
     known = Plan(todo.photos, todo.blocks, (*found.rejections, *todo.rejections))
     pipeline = beam.Pipeline(options=options)
     write(city(pipeline, known, bench), bench, run)
-    result = pipeline.run()
-    result.wait_until_finish()
+    try:
+        result = pipeline.run()
+        result.wait_until_finish()
+    except Unstored as problem:
+        raise Lost(unstored(bench.store, str(problem))) from problem
+    except RuntimeError as problem:  # a worker's exception reaches us as its traceback
+        told = re.search(rf"{Unstored.__name__}: (.*)", str(problem))
+        if told is None:
+            raise
+        raise Lost(unstored(bench.store, told[1])) from problem
     return result
+
+
+def unstored(store: Store, why: str) -> str:
+    """Say that a run ended because what it made could not be kept."""
+    return (
+        f"{store.root} takes no more artifacts: {why}; make room or mend the folder, "
+        "and build again: what is kept already is not made twice"
+    )
 
 
 def write(built: Built, bench: Bench, run: str) -> None:

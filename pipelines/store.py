@@ -30,6 +30,13 @@ MADE: Final = b"made"
 REJECTED: Final = b"rejected"
 
 
+class Unstored(BaseException):
+    """What was made can't be put where it belongs; no photo's fault, it ends the run.
+
+    It is no `Exception`, so that nothing that forgives a photo's crash forgives it.
+    """
+
+
 def key_of(*parts: str) -> str:
     """Hash parts into a key; ("ab", "c") and ("a", "bc") differ."""
     joined = "\0".join(parts).encode()
@@ -129,11 +136,18 @@ class Store:
             return tables.records(Rejection, artifact.read())[0]
 
     def keep(self, name: str, made: pa.Table | Rejection) -> None:
-        """Write an artifact: rows that were made, or the rejection in their place."""
+        """Write an artifact: rows that were made, or the rejection in their place.
+
+        Raises:
+            Unstored: if it can't be written there, as on a full disk.
+        """
         rejected = isinstance(made, Rejection)
         table = tables.table(Rejection, [made]) if rejected else made
         mark = {VERDICT: REJECTED if rejected else MADE}
         marked = table.replace_schema_metadata(
             {**(table.schema.metadata or {}), **mark}
         )
-        self.write_table(name, marked)
+        try:
+            self.write_table(name, marked)
+        except OSError as problem:
+            raise Unstored(f"{name}: {problem}") from problem

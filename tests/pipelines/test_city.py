@@ -14,7 +14,7 @@ from rich.console import Console
 from nostalgin_core import reconstruct
 from nostalgin_core.steps import Networks
 from pipelines import manifest
-from pipelines.build import Report, build
+from pipelines.build import Lost, Report, build
 from pipelines.models import Models
 from pipelines.options import options
 from pipelines.publish import publish
@@ -203,6 +203,19 @@ def test_two_folders_may_hold_photos_of_one_name(city: Path, tmp_path: Path) -> 
         if photo["caption"] == "5_1.png"
     ]
     assert sorted(named) == ["", "Another archive"]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_folder_that_takes_no_artifacts_fails_the_run_and_blames_no_photo(
+    city: Path, tmp_path: Path, workers: int
+) -> None:
+    other = copied(city, tmp_path)
+    shutil.copytree(city / "artifacts", other / "artifacts")
+    shutil.rmtree(other / "artifacts/matte")
+    (other / "artifacts/matte").write_text("a file where a folder should be")
+    with pytest.raises(Lost, match=r"takes no more artifacts.*artifacts/matte"):
+        built(other, [f"--direct_num_workers={workers}"])
+    assert not (other / "CURRENT").exists()
 
 
 def test_clock_times_stand_in_one_file_alone(city: Path) -> None:
