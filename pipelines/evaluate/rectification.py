@@ -67,10 +67,10 @@ def evaluate(
     Raises:
         Unmeasurable: if a part or a detector has no such name, or a part no data.
     """
-    there = present(data)
-    parts = there if parts is None else parts
-    named("part", parts, PARTS)
+    named("part", parts or (), PARTS)
     named("detector", detector, tuple(DETECTORS))
+    there = ("painted",) if parts == ("painted",) else present(data)
+    parts = there if parts is None else parts
     for part in parts:
         if part not in there:
             raise Unmeasurable(f"{data} has no data for {part}: {NEEDS[part]}")

@@ -298,3 +298,15 @@ def test_a_folder_without_data_is_named_and_ends_with_one(tmp_path: Path) -> Non
     code, output = said(str(tmp_path), "--parts", "label")
     assert code == 1
     assert "there are york_urban, labels, painted, table2" in output
+
+
+def test_painted_streets_need_no_data_and_a_part_of_no_name_lists_the_parts(
+    tmp_path: Path,
+) -> None:
+    asked = ["evaluate", "rectification", str(tmp_path), "--fronts", "1", "--parts"]
+    done = CliRunner().invoke(cli.app, [*asked, "painted"])
+    assert done.exit_code == 0, done.output
+    assert "worst angle" in done.output
+    wrong = CliRunner().invoke(cli.app, [*asked, "paint"])
+    assert wrong.exit_code == 1
+    assert "painted" in wrong.output
