@@ -67,7 +67,7 @@ def evaluate(
     Raises:
         Unmeasurable: if a part or a detector has no such name, or a part no data.
     """
-    named("part", parts or (), PARTS)
+    named("part", PARTS if parts is None else parts, PARTS)
     named("detector", detector, tuple(DETECTORS))
     there = ("painted",) if parts == ("painted",) else present(data)
     parts = there if parts is None else parts
