@@ -25,6 +25,7 @@ from nostalgin_core import closed_form, facade
 from nostalgin_core.arrays import Gray, Mask, Probability
 from nostalgin_core.laplacian import Belief
 from nostalgin_core.records import Instance, Matted, Occluder, Photo, Rejection
+from nostalgin_core.straight import straight
 from nostalgin_core.trimap import (
     BACKGROUND,
     FOREGROUND,
@@ -67,6 +68,7 @@ def matte(
         epsilon: See `closed_form.alpha`.
         belief: The weight of the network's probability inside the band.
     """
+    instances = straight(photo, instances)
     fronts = facade.arrange(photo, instances)
     if isinstance(fronts, Rejection):
         return fronts

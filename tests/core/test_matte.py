@@ -2,7 +2,7 @@ import cv2
 import numpy as np
 import pytest
 
-from nostalgin_core import matte
+from nostalgin_core import facade, matte
 from nostalgin_core.records import Box, Instance, Matted, Photo, Rejection
 
 H, W = 240, 320
@@ -51,10 +51,13 @@ def matted() -> Matted:
 
 
 def test_outlines_move_to_the_edges_that_the_camera_saw(matted: Matted) -> None:
-    for front, true in zip(matted.facades, (LEFT, RIGHT), strict=True):
+    found = [_found("facade", LEFT), _found("facade", RIGHT), _found("vehicle", CAR)]
+    arranged = facade.arrange(_photo(), found)
+    assert not isinstance(arranged, Rejection)
+    for front, said, true in zip(matted.facades, arranged, (LEFT, RIGHT), strict=True):
         visible = (true > 0) & (CAR == 0)
         wrong = (front.alpha > 0.5) ^ visible
-        before = front.mask ^ visible
+        before = said.mask ^ visible
         assert wrong.sum() < 0.35 * before.sum()
         assert np.abs(front.alpha - visible).mean() < 0.5 * before.mean()
 
