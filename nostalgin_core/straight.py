@@ -192,7 +192,8 @@ def draw(probability: Probability, line: Line) -> None:
     ramp = np.clip(0.5 + away / (2 * RAMP_PX), 0, 1).astype(np.float32)
     likely = probability[rows]
     deep = np.where(likely > 0.5, likely, np.float32(OURS))
-    drawn = np.where(away < 0, np.minimum(ramp, 1 - OURS), np.maximum(ramp, deep))
+    less = np.minimum(likely, np.float32(1 - OURS))
+    drawn = np.where(away < 0, np.minimum(ramp, less), np.maximum(ramp, deep))
     strip = away < np.maximum(RAMP_PX, before - places + 1)[:, None]
     probability[rows] = np.where(strip, drawn, likely)
 

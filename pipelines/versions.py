@@ -22,7 +22,7 @@ from pipelines.store import ARTIFACTS, key_of
 
 CODE: Final = {
     "segment": 5,
-    "matte": 6,
+    "matte": 7,
     "rectify": 4,
     "inpaint": 5,
     "block": 2,
