@@ -44,5 +44,7 @@ def kept(alpha: Float[np.ndarray, "..."]) -> Float32[np.ndarray, "..."]:
 
 def marked(marks: EvidenceMap, edge: Mask, alpha: Alpha) -> EvidenceMap:
     """Mark those texels of a rim as inpainted that mostly are."""
-    filled = edge & (kept(alpha) < 0.5)
-    return np.where(filled, np.uint8(evidence.INPAINTED), marks)
+    changed = marks.copy()  # only the rim is looked at: alpha may have 10^8 texels
+    filled = kept(alpha[edge]) < 0.5
+    changed[edge] = np.where(filled, np.uint8(evidence.INPAINTED), marks[edge])
+    return changed
