@@ -126,12 +126,16 @@ def test_a_run_that_can_not_be_written_is_told_before_the_work(tmp_path: Path) -
     assert not (city / "artifacts").exists()
 
 
-def test_a_build_of_which_no_block_comes_points_at_no_run(tmp_path: Path) -> None:
+def test_a_build_of_which_no_block_comes_points_at_no_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def crash(*_: object) -> None:
+        raise ArithmeticError("no block can be made")
+
+    monkeypatch.setattr("pipelines.blocks.model", crash)
     city = painted.write_city(tmp_path)
     for name in ("5_1.png", "5_2.jpg", "5_2a.png", "6_1.png"):
         (tmp_path / "photos" / name).write_bytes(b"")
-    (city / "artifacts").mkdir()
-    (city / "artifacts" / "block").write_text("in the way")
     words = ["build", city, "--models", tmp_path / "models", "--max-rejected", "1"]
     assert nostalgin(*words).exit_code == 3
     assert not (city / "CURRENT").exists()
