@@ -57,10 +57,9 @@ def photograph(
     camera = camera or viewpoint.choose(rng, lot, boxes, shape=shape)
     frame, inside = film.exposed(rng, shape)
     text = f"{lot.block} -{lot.lot} M"
-    if lot.ruined:
+    if lot.ruined:  # the fog has eaten everything
         fogged = film.develop(rng, film.fog(rng, shape), inside)
-        nothing = np.ones(shape, np.float32)
-        truth = Truth(camera, (), (), nothing, text, frame)
+        truth = Truth(camera, (), (), np.ones(shape, np.float32), text, frame)
         return PaintedPhoto(photo_name(lot, view), fogged, truth)
     fine = magnified(camera)
     size = (SUPER * shape[0], SUPER * shape[1])
