@@ -17,13 +17,13 @@ from nostalgin_core.arrays import Points
 from nostalgin_core.chain import Footprint, Ring, chain
 from nostalgin_core.cuboid import ASSUMED_M, Shown, cuboid
 from nostalgin_core.outline import nominal_headings
-from nostalgin_core.records import Assignment, Block, Building, Front
+from nostalgin_core.records import Assignment, Block, Building, Front, Texture
 
 FALLBACK_GAP_M = 24.0
 NEIGHBOURS = 4
 WIDTH_SD, HEIGHT_SD = 0.4, 0.6  # of the logarithms: heights vary more than widths
 
-Aspects = Mapping[tuple[str, int], tuple[float, float]]  # aspect and its spread
+Aspects = Mapping[Texture, tuple[float, float]]  # aspect and its spread
 
 
 @dataclass(frozen=True, slots=True, eq=False)

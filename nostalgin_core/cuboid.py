@@ -12,13 +12,11 @@ import numpy as np
 
 from nostalgin_core import evidence
 from nostalgin_core.chain import Footprint
-from nostalgin_core.records import Building, Wall
+from nostalgin_core.records import Building, Texture, Wall
 
 LOWEST_M, HIGHEST_M = 2.5, 320.0  # a stall; the tallest masonry front of the time
 ASSUMED_M = 14.0  # four storeys, where a whole block has no photograph
 LEAST_SD = 0.02  # no aspect is trusted beyond 2 %
-
-Texture = tuple[str, int]  # photo key, facade index
 
 
 @dataclass(frozen=True, slots=True)

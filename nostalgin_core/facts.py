@@ -1,59 +1,31 @@
 """What a click on a building tells: one row a building, in the order of the block."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core.cuboid import Texture
-from nostalgin_core.records import Assignment, Block, Building, Front
-
-Facts = dict[str, list[str] | np.ndarray]
+from nostalgin_core.records import Block, Building, Front
+from nostalgin_core.settle import Settled
 
 
-def table(
-    block: Block,
-    fronts: Sequence[Front],
-    assignments: Sequence[Assignment],
-    *,
-    credit_of: Mapping[str, str] | None = None,
-) -> Facts:
-    """List what is known of each building, as columns.
+def table(settled: Settled) -> dict[str, list[str]]:
+    """List what is known of each building in words, as columns.
 
     `address` joins the building's addresses, each with its street; `photo` is the key
     of the photograph that it wears, empty where there is none; `photos` are the keys of
-    all photographs that show it, joined by spaces; `credit` is that of its
-    photograph, by the photo's key.
+    all photographs that show it, joined by spaces.
     """
-    credit_of = credit_of or {}
-    by_id = {front.front_id: front for front in fronts}
-    own = [
-        [by_id[wall.front_id] for wall in building.walls if wall.front_id in by_id]
-        for building in block.buildings
-    ]
-    worn = [_worn(building) for building in block.buildings]
-    shows = [
-        sorted({one.photo for one in assignments if one.front_id in _ids(some)})
-        for some in own
-    ]
+    buildings = settled.block.buildings
+    own = [settled.fronts_of(one.building_id) for one in buildings]
     return {
-        "building_id": [building.building_id for building in block.buildings],
-        "block": [block.block] * len(block.buildings),
-        "lot": [
-            some[0].lot if some else one.building_id.removeprefix(f"{block.block}-")
-            for one, some in zip(block.buildings, own, strict=True)
-        ],
-        "address": [address(some) for some in own],
-        "assumed": np.array([one.assumed for one in block.buildings], np.uint8),
-        **measures(block),
-        "photo": [texture[0] if texture else "" for texture in worn],
-        "facade": np.array(
-            [texture[1] if texture else -1 for texture in worn], np.int32
-        ),
-        "photos": [" ".join(some) for some in shows],
-        "credit": [
-            credit_of.get(texture[0], "") if texture else "" for texture in worn
-        ],
+        "id": [one.building_id for one in buildings],
+        "block": [settled.block.block] * len(buildings),
+        "lot": [fronts[0].lot if fronts else "" for fronts in own],
+        "address": [address(fronts) for fronts in own],
+        "assumed": ["yes" if one.assumed else "no" for one in buildings],
+        "photo": [_worn(one) for one in buildings],
+        "photos": [_showing(settled, fronts) for fronts in own],
     }
 
 
@@ -66,35 +38,19 @@ def measures(block: Block) -> dict[str, Float[np.ndarray, " n"]]:
 
 
 def address(fronts: Sequence[Front]) -> str:
-    """Join a building's addresses: "561-565 7 Avenue, 155 West 40 Street".
-
-    A second front without a house number adds its street in brackets.
-    """
-    numbered = [f"{one.address} {one.street}".strip() for one in fronts if one.address]
-    bare = [one.street for one in fronts if not one.address and one.street]
-    if not numbered:
-        return ", ".join(dict.fromkeys(bare))
-    return ", ".join(dict.fromkeys([*numbered, *(f"({street})" for street in bare)]))
+    """Join a building's addresses: "561-565 7 Avenue; 155 West 40 Street"."""
+    return "; ".join(f"{one.address} {one.street}".strip() for one in fronts)
 
 
-def bounds(
-    block: Block,
-) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """Find the lowest and highest corner of a block: east, north, up, in metres."""
-    ground = np.concatenate([one.footprint_m for one in block.buildings])
-    top = max(one.height_m for one in block.buildings)
-    (east0, north0), (east1, north1) = ground.min(axis=0), ground.max(axis=0)
-    low = (float(east0), float(north0), 0.0)
-    return low, (float(east1), float(north1), float(top))
-
-
-def _ids(fronts: Sequence[Front]) -> set[str]:
-    return {front.front_id for front in fronts}
-
-
-def _worn(building: Building) -> Texture | None:
+def _worn(building: Building) -> str:
     textures = [wall.texture for wall in building.walls if wall.texture is not None]
-    return textures[0] if textures else None
+    return textures[0][0] if textures else ""
+
+
+def _showing(settled: Settled, fronts: Sequence[Front]) -> str:
+    ids = {front.front_id for front in fronts}
+    shown = {one.photo for one in settled.assignments if one.front_id in ids}
+    return " ".join(sorted(shown))
 
 
 def _width(building: Building) -> float:

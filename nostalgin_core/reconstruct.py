@@ -7,7 +7,7 @@ the pipeline writes equals what this loop returns, byte for byte.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from nostalgin_core import quantise, settle, steps
+from nostalgin_core import model, quantise, settle, steps
 from nostalgin_core.records import Front, Photo, Rejection, Seen
 from nostalgin_core.settle import Settled
 from nostalgin_core.steps import Networks, Stages
@@ -23,7 +23,7 @@ class Rebuilt:
 
 
 def rebuild(
-    block: str,
+    name: str,
     fronts: Sequence[Front],
     photos: Mapping[str, tuple[bytes, Sequence[str]]],
     networks: Networks,
@@ -36,25 +36,23 @@ def rebuild(
     these out.
     """
     made = {
-        name: steps.photograph(data, networks, name=name)
-        for name, (data, _) in sorted(photos.items())
+        file: steps.photograph(data, networks, name=file)
+        for file, (data, _) in sorted(photos.items())
     }
     seen = [each for one in made.values() for each in sums(one)]
     candidates = {
-        one.photo.key: photos[name][1]
-        for name, one in made.items()
+        one.photo.key: photos[file][1]
+        for file, one in made.items()
         if one.photo is not None and one.rectified
     }
-    settled = settle.settle(block, fronts, candidates, seen)
+    settled = settle.settle(name, fronts, candidates, seen)
     finished = {
         (one.photo.key, view.facade): quantise.elevation(view)
         for one in made.values()
         if isinstance(one.photo, Photo)
         for view in one.elevations
     }
-    glb, _ = settle.model(
-        settled.block, finished, table=settle.table(settled), credit=credit
-    )
+    glb, _ = model.model(settled, finished, credit=credit)
     photo_rejections = [each for one in made.values() for each in one.rejections]
     return Rebuilt(settled, glb, (*photo_rejections, *settled.rejections))
 

@@ -181,6 +181,9 @@ class Assignment:
     score: float  # 0 to 1, comparable between photos of one front
 
 
+Texture = tuple[str, int]  # a photo's key and a facade's index: an elevation
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Wall:
     """One vertical rectangle of a building, as seen from outside."""
@@ -188,12 +191,8 @@ class Wall:
     start_m: tuple[float, float]  # east, north of the lower left corner
     end_m: tuple[float, float]  # east, north of the lower right corner
     front_id: str | None  # the front it stands on, if any
-    texture: (
-        tuple[str, int] | None
-    )  # (photo key, facade index) whose elevation it wears
-    evidence: (
-        int | None
-    )  # COPIED or ASSUMED for the whole wall; None: the texture's own
+    texture: Texture | None  # whose elevation it wears
+    evidence: int | None  # COPIED or ASSUMED, all of it; None: the texture's own
 
 
 @dataclass(frozen=True, slots=True, eq=False)

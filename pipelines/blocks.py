@@ -10,8 +10,8 @@ import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
 
-from nostalgin_core import settle
-from nostalgin_core.records import Block, Building, Elevation, Rejection
+from nostalgin_core import facts, model, settle
+from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
 from nostalgin_core.settle import Settled
 from pipelines import tables
 from pipelines.attempt import Attempt
@@ -69,7 +69,7 @@ class Modelled:
         return self.placed.key
 
 
-def texture_of(ref: FacadeRef) -> tuple[str, int]:
+def texture_of(ref: FacadeRef) -> Texture:
     """Name a facade as walls do."""
     return ref.seen.photo, ref.seen.facade
 
@@ -125,12 +125,12 @@ def modelled(
     one = only(one, {texture_of(ref) for ref in parts["finished"]})
     key = bench.versions.key("block", *contents(one, bench))
     path = bench.versions.path("block", key)
-    bench.keep(path, lambda: model(one, bench))
+    bench.keep(path, lambda: glb(one, bench))
     row = bench.store.read_table(path, ["sha256", "low_m", "high_m"]).to_pylist()[0]
     return Modelled(one, path, row["sha256"], tuple(row["low_m"]), tuple(row["high_m"]))
 
 
-def only(one: Placed, done: set[tuple[str, int]]) -> Placed:
+def only(one: Placed, done: set[Texture]) -> Placed:
     """Raise the buildings anew if a facade they wear could not be finished."""
     if all(texture_of(ref) in done for ref in one.worn()):
         return one
@@ -152,7 +152,7 @@ def contents(one: Placed, bench: Bench) -> list[str]:
         for ref in one.worn()
     ]
     return [
-        json.dumps([one.key, one.task.credit, buildings, settle.table(one.settled)]),
+        json.dumps([one.key, one.task.credit, buildings, facts.table(one.settled)]),
         *finished,
     ]
 
@@ -162,12 +162,10 @@ def walls(building: Building) -> list[dict[str, Any]]:
     return [tables.to_row(wall) for wall in building.walls]
 
 
-def model(one: Placed, bench: Bench) -> pa.Table:
+def glb(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
     views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
-    data, whole = settle.model(
-        one.block, views, table=settle.table(one.settled), credit=one.task.credit
-    )
+    data, whole = model.model(one.settled, views, credit=one.task.credit)
     row = {
         "block": one.key,
         "glb": data,

@@ -15,7 +15,7 @@ import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
 
-from nostalgin_core import settle
+from nostalgin_core import facts
 from nostalgin_core.records import Rejection, Seen
 from pipelines import site_record, tables
 from pipelines.blocks import Modelled, Placed, texture_of
@@ -111,14 +111,14 @@ class BuildingRows:
         refs = {texture_of(ref): ref for ref in one.facades}
         scores = {(a.photo, a.facade): a.score for a in one.settled.assignments}
         for building in one.block.buildings:
-            own = settle.fronts_of(one.settled, building.building_id)
+            own = one.settled.fronts_of(building.building_id)
             worn = [w.texture for w in building.walls if w.texture is not None]
             worn = list(dict.fromkeys(worn))
             yield {
                 "block": one.key,
                 "building_id": building.building_id,
                 "lot": own[0].lot if own else "",
-                "address": "; ".join(settle.address(front) for front in own),
+                "address": facts.address(own),
                 "height_m": building.height_m,
                 "footprint_m": building.footprint_m.ravel().tolist(),
                 "assumed": building.assumed,

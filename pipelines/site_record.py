@@ -5,6 +5,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from nostalgin_core.facts import address
 from nostalgin_core.records import (
     Assignment,
     Block,
@@ -12,9 +13,9 @@ from nostalgin_core.records import (
     Front,
     Rejection,
     Seen,
+    Texture,
     Wall,
 )
-from nostalgin_core.settle import address
 
 Json = dict[str, Any]
 CENTIMETRE: Final = 2  # digits
@@ -62,7 +63,7 @@ def record(
 def _building(
     building: Building,
     fronts: Mapping[str, Front],
-    facades: Mapping[tuple[str, int], Seen],
+    facades: Mapping[Texture, Seen],
     showing: Mapping[str, Sequence[str]],
     photos: Mapping[str, Mapping[str, Any]],
 ) -> Json:
@@ -75,7 +76,7 @@ def _building(
     return {
         "id": building.building_id,
         "lot": own[0].lot if own else building.building_id,
-        "address": "; ".join(address(front) for front in own),
+        "address": address(own),
         "street": ", ".join(
             dict.fromkeys(front.street for front in own if front.street)
         ),
@@ -102,9 +103,7 @@ def _width(wall: Wall) -> float:
     return float(np.hypot(*np.subtract(wall.end_m, wall.start_m)))
 
 
-def _height_sd(
-    building: Building, facades: Mapping[tuple[str, int], Seen]
-) -> float | None:
+def _height_sd(building: Building, facades: Mapping[Texture, Seen]) -> float | None:
     """Carry the aspect's relative spread over to the height; the surest one counts."""
     textures = [wall.texture for wall in building.walls if wall.texture is not None]
     worn = [facades[texture] for texture in textures if texture in facades]
@@ -114,7 +113,7 @@ def _height_sd(
     return round(building.height_m * relative, CENTIMETRE)
 
 
-def _share(building: Building, facades: Mapping[tuple[str, int], Seen]) -> float:
+def _share(building: Building, facades: Mapping[Texture, Seen]) -> float:
     walls = _fronts(building)
     widths = [_width(wall) for wall in walls]
     shares = [_photographed(wall, facades) for wall in walls]
@@ -122,7 +121,7 @@ def _share(building: Building, facades: Mapping[tuple[str, int], Seen]) -> float
     return float(np.dot(widths, shares) / whole) if whole > 0 else 0.0
 
 
-def _photographed(wall: Wall, facades: Mapping[tuple[str, int], Seen]) -> float:
+def _photographed(wall: Wall, facades: Mapping[Texture, Seen]) -> float:
     if wall.texture is None or wall.evidence is not None:
         return 0.0
     known = facades.get(wall.texture)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Final
 
-from nostalgin_core import inpaint, matte, photo, rectify, segment, settle
+from nostalgin_core import inpaint, matte, model, photo, rectify, segment, settle
 from pipelines.models import Models
 from pipelines.store import ARTIFACTS, key_of
 
@@ -33,7 +33,7 @@ MODULES: Final[dict[str, tuple[ModuleType, ...]]] = {
     "matte": (matte,),
     "rectify": (rectify,),
     "inpaint": (inpaint,),
-    "block": (settle,),
+    "block": (settle, model),
     "thumbnail": (photo,),
 }
 CORE: Final = "nostalgin_core."

@@ -6,8 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from nostalgin_core import atlas, block, evidence, facts, gltf, mesh, picture, tileset
-from nostalgin_core.records import Assignment, Block, Elevation, Front, Mesh
+from nostalgin_core import atlas, evidence, facts, gltf, mesh, picture, tileset
+from nostalgin_core.records import (
+    Assignment,
+    Block,
+    Elevation,
+    Front,
+    Mesh,
+    Seen,
+    Texture,
+)
+from nostalgin_core.settle import Settled, raised
 
 # lot, side, street, address, width, depth, storeys (0: no photograph)
 LOTS = (
@@ -110,7 +119,7 @@ def tiles(name: str) -> dict[atlas.TileKey, Elevation]:
 
 
 @cache
-def elevations(name: str = "1") -> dict[tuple[str, int], Elevation]:
+def elevations(name: str = "1") -> dict[Texture, Elevation]:
     drawn = {}
     for number, (lot, side, _, _, width, _, storeys) in enumerate(LOTS):
         if storeys:
@@ -134,6 +143,32 @@ def assignments(name: str = "1") -> tuple[Assignment, ...]:
         for lot, side, *_, storeys in LOTS
         if storeys
     )
+
+
+def seen(name: str = "1") -> list[Seen]:
+    """See every painted elevation, the right one of a corner to the right."""
+    return [
+        Seen(
+            photo=photo,
+            facade=facade,
+            target=True,
+            target_score=0.9,
+            score=0.95,
+            aspect=one.aspect,
+            aspect_sd=one.aspect_sd,
+            left_px=100.0 + 200.0 * facade,
+            area_px=50_000.0,
+            photographed=0.9,
+        )
+        for (photo, facade), one in elevations(name).items()
+    ]
+
+
+@cache
+def settled(name: str = "1") -> Settled:
+    """Raise the block from the true assignments."""
+    given = fronts(name), assignments(name)
+    return Settled(*given, (), raised(name, *given, seen(name)))
 
 
 @cache
@@ -160,9 +195,7 @@ def built(name: str = "1") -> tuple[Block, bytes]:
 
 def rebuilt(name: str) -> tuple[Block, bytes]:
     """Build the block and write it."""
-    drawn = elevations(name)
-    aspects = {key: (one.aspect, one.aspect_sd) for key, one in drawn.items()}
-    made = block.block(name, fronts(name), assignments(name), aspects)
+    drawn, made = elevations(name), settled(name).block
     page = atlas.build(
         {key: drawn[key[:2]] for key in atlas.wanted(made)}, longest_px=512
     )
@@ -170,17 +203,36 @@ def rebuilt(name: str) -> tuple[Block, bytes]:
         (one.building_id, mesh.building(one, page, number=number))
         for number, one in enumerate(made.buildings)
     ]
-    known = facts.table(made, fronts(name), assignments(name))
     data = gltf.glb(
         name,
         meshes,
         colours=picture.colours(page),
         evidence=picture.evidence_key(page),
-        table=known,
+        table=known(name),
         copyright="painted",
         extras={"evidence": picture.legend(), "block": name},
     )
     return made, data
+
+
+def known(name: str) -> dict[str, list[str] | np.ndarray]:
+    """Tell what is known of each building, in words, numbers and flags."""
+    made = settled(name).block
+    flags = np.array([one.assumed for one in made.buildings], np.uint8)
+    storeys = np.array([round(b.height_m / STOREY_M) for b in made.buildings], np.int32)
+    numbers = {"flag": flags, "storeys": storeys, **facts.measures(made)}
+    return {**facts.table(settled(name)), **numbers}
+
+
+def bounds(
+    made: Block,
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Find the lowest and highest corner of a block: east, north, up, in metres."""
+    ground = np.concatenate([one.footprint_m for one in made.buildings])
+    top = max(one.height_m for one in made.buildings)
+    (east0, north0), (east1, north1) = ground.min(axis=0), ground.max(axis=0)
+    low = (float(east0), float(north0), 0.0)
+    return low, (float(east1), float(north1), float(top))
 
 
 def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
@@ -190,16 +242,16 @@ def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
     for index, name in enumerate(names):
         made, data = built(name)
         (folder / "blocks" / f"{name}.glb").write_bytes(data)
-        low, high = facts.bounds(made)
+        low, high = bounds(made)
         origin = (0.0, index * 90.0)
         tiles.append(tileset.Tile(f"blocks/{name}.glb", low, high, origin_m=origin))
-        known = facts.table(made, fronts(name), assignments(name))
+        table = known(name)
         columns = [
             value if isinstance(value, list) else value.tolist()
-            for value in known.values()
+            for value in table.values()
         ]
         rows += [
-            dict(zip(known, row, strict=True)) for row in zip(*columns, strict=True)
+            dict(zip(table, row, strict=True)) for row in zip(*columns, strict=True)
         ]
     text = json.dumps(tileset.tileset(tiles), indent=1)
     (folder / "tileset.json").write_text(text)

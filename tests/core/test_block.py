@@ -1,10 +1,9 @@
 from dataclasses import replace
 
-import numpy as np
 import pytest
 import shapely
 
-from nostalgin_core import address, block, facts
+from nostalgin_core import address, block
 from nostalgin_core.cuboid import Shown
 from nostalgin_core.records import Front
 from tests.core import sample_block as sample
@@ -113,25 +112,6 @@ def test_a_guessed_width_moves_towards_what_its_photo_makes_likely() -> None:
     assert 7.6 < block.with_seen_widths([guess], wide)[0].width_m < 28.0
     assert 2.8 < block.with_seen_widths([guess], narrow)[0].width_m < 7.6
     assert block.with_seen_widths([guess], {})[0].width_m == 7.6
-
-
-def test_facts_have_a_row_a_building_in_its_order() -> None:
-    made, _ = sample.built("1")
-    table = facts.table(made, sample.fronts("1"), sample.assignments("1"))
-    assert table["building_id"] == [one.building_id for one in made.buildings]
-    assert {len(column) for column in table.values()} == {len(made.buildings)}
-    row = table["building_id"].index("1-9")
-    assert table["address"][row] == "101-103 West 1 Street, 1-3 First Avenue"
-    assert table["photo"][row] == "photo-1-9"
-
-
-def test_bounds_hold_every_building() -> None:
-    made, _ = sample.built("1")
-    low, high = facts.bounds(made)
-    for one in made.buildings:
-        assert (one.footprint_m >= np.array(low[:2])).all()
-        assert (one.footprint_m <= np.array(high[:2])).all()
-        assert low[2] == 0 < one.height_m <= high[2]
 
 
 def test_a_block_without_fronts_is_a_mistake() -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from nostalgin_core import facts, gltf, mesh, picture
+from nostalgin_core import gltf, mesh, picture
 from nostalgin_core.picture import Picture
 from nostalgin_core.records import Block
 from tests.core import sample_block as sample
@@ -62,7 +62,7 @@ def written(image_format: picture.ImageFormat = "webp") -> bytes:
         meshes,
         colours=picture.colours(sheet, image_format=image_format),
         evidence=picture.evidence_key(sheet),
-        table=facts.table(made, sample.fronts("1"), sample.assignments("1")),
+        table=sample.known("1"),
         copyright="nobody",
         extras={"run": "r"},
     )
@@ -167,7 +167,7 @@ def test_a_vertex_tells_its_building_through_the_property_table(
 ) -> None:
     made, data = block
     document, _ = parts(data)
-    ids = strings(data, "building_id")
+    ids = strings(data, "id")
     assert ids == [one.building_id for one in made.buildings]
     for one in document["meshes"]:
         accessor = document["accessors"][

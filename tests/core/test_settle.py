@@ -1,32 +1,9 @@
-import json
-import struct
-
 import numpy as np
 import pytest
 
-from nostalgin_core import settle
-from nostalgin_core.records import Front, Seen
-from nostalgin_core.settle import Settled
+from nostalgin_core.records import Front
+from nostalgin_core.settle import Settled, settle
 from tests.core import sample_block as sample
-
-
-def seen() -> list[Seen]:
-    """See every painted elevation, the right one of a corner to the right."""
-    return [
-        Seen(
-            photo=photo,
-            facade=facade,
-            target=True,
-            target_score=0.9,
-            score=0.95,
-            aspect=one.aspect,
-            aspect_sd=one.aspect_sd,
-            left_px=100.0 + 200.0 * facade,
-            area_px=50_000.0,
-            photographed=0.9,
-        )
-        for (photo, facade), one in sample.elevations("1").items()
-    ]
 
 
 def named_once() -> list[Front]:
@@ -47,7 +24,7 @@ def candidates(fronts: list[Front]) -> dict[str, list[str]]:
 @pytest.fixture(scope="module")
 def settled() -> Settled:
     fronts = named_once()
-    return settle.settle("1", fronts, candidates(fronts), seen())
+    return settle("1", fronts, candidates(fronts), sample.seen())
 
 
 def test_photographs_alone_bring_back_the_corners_that_an_archive_leaves_out(
@@ -67,30 +44,9 @@ def test_every_facade_stands_where_it_was_painted(settled: Settled) -> None:
 
 def test_the_order_of_what_was_seen_changes_nothing(settled: Settled) -> None:
     fronts = named_once()
-    again = settle.settle("1", fronts, candidates(fronts), seen()[::-1])
+    again = settle("1", fronts, candidates(fronts), sample.seen()[::-1])
     assert again.assignments == settled.assignments
     for a, b in zip(again.block.buildings, settled.block.buildings, strict=True):
         np.testing.assert_array_equal(a.footprint_m, b.footprint_m)
         assert (a.building_id, a.height_m) == (b.building_id, b.height_m)
         assert [w.texture for w in a.walls] == [w.texture for w in b.walls]
-
-
-def test_the_model_tells_each_building_s_measures_and_the_credit(
-    settled: Settled,
-) -> None:
-    views = dict(sample.elevations("1"))
-    data, whole = settle.model(
-        settled.block, views, table=settle.table(settled), credit="An Archive"
-    )
-    (length,) = struct.unpack_from("<I", data, 12)
-    document = json.loads(data[20 : 20 + length])
-    metadata = document["extensions"]["EXT_structural_metadata"]
-    properties = metadata["schema"]["classes"]["building"]["properties"]
-    assert {"id", "block", "lot", "address", "assumed", "photo", "credit"} <= set(
-        properties
-    )
-    assert properties["height_m"] == {"type": "SCALAR", "componentType": "FLOAT32"}
-    assert document["asset"]["copyright"] == "An Archive"
-    assert document["asset"]["extras"]["block"] == "1"
-    highest = max(one.height_m for one in settled.block.buildings)
-    assert whole.positions_m[:, 2].max() == pytest.approx(highest)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from pyproj import Geod, Transformer
 
-from nostalgin_core import facts, tileset
+from nostalgin_core import tileset
 from nostalgin_core.tileset import Place, Tile
 from tests.core import sample_block as sample
 
@@ -54,7 +54,7 @@ def test_children_lie_inside_their_parent(
 
 def test_content_lies_inside_its_tile() -> None:
     made, _ = sample.built("1")
-    low, high = facts.bounds(made)
+    low, high = sample.bounds(made)
     tile = tileset.tileset([Tile("1.glb", low, high)])["root"]["children"][0]
     ground = np.concatenate([one.footprint_m for one in made.buildings])
     tops = np.repeat([one.height_m for one in made.buildings], 4)

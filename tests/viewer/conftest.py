@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from nostalgin_core import facts
 from pipelines import site, site_record, view
 from tests.core import sample_block
 
@@ -32,7 +31,7 @@ def model(name: str, origin_m: tuple[float, float]) -> site.BlockModel:
         seen=(),
         photos=photos,
     )
-    low, high = facts.bounds(block)
+    low, high = sample_block.bounds(block)
     return site.BlockModel(name, glb, record, low, high, origin_m)
 
 
