@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 UV := $(BIN)/uv
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 INSTALL := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(UV) pip install --quiet --override deploy/overrides.txt
-VIEWER := pipelines/viewer_dist/index.html
+VIEWER := pipelines/site/viewer_dist/index.html
 VIEWER_SOURCES := $(shell find viewer -type f -not -path '*/node_modules/*' -not -path '*/dist/*' 2>/dev/null)
 CITY ?= demo-city
 
@@ -58,4 +58,4 @@ chromium:
 	@sh deploy/chromium.sh
 
 clean:
-	rm -rf $(VENV) viewer/node_modules pipelines/viewer_dist demo-city
+	rm -rf $(VENV) viewer/node_modules pipelines/site/viewer_dist demo-city

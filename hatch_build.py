@@ -17,7 +17,7 @@ class ViewerHook(BuildHookInterface):
         root = Path(self.root)
         if (
             version == "editable"
-            or (root / "pipelines/viewer_dist/index.html").exists()
+            or (root / "pipelines/site/viewer_dist/index.html").exists()
         ):
             return
         npm = shutil.which("npm")

@@ -1,9 +1,10 @@
-"""The six weights of `nostalgin_core/target.py` are fitted to hand labels.
+"""The six weights of `nostalgin_core/matte/target.py` are fitted to hand labels.
 
 Each labelled tax photo gives its fronts twice: as outlined by hand, with the score 0.9,
-and as the network finds them. A front found counts as recorded where it overlaps a
-labelled target by a half or more. The weights minimise the logistic loss, summed over
-fronts and averaged over photos, plus a hundredth of their squares.
+and as the network finds them, their sides made straight as in a build. A front found
+counts as recorded where it overlaps a labelled target by a half or more. The weights
+minimise the logistic loss, summed over fronts and averaged over photos, plus a
+hundredth of their squares.
 
     python -m export.fit_target --data DATA
 """
@@ -18,12 +19,12 @@ from scipy.optimize import minimize
 
 from export.mask_rcnn_onnx import open_shipped
 from export.segmentation_data import Sample, fill, read_folder
-from nostalgin_core import facade
+from nostalgin_core import matte, placard, segment
 from nostalgin_core.arrays import Mask
-from nostalgin_core.measure_segmentation import overlap
+from nostalgin_core.matte.target import WEIGHTS, features
+from nostalgin_core.measure.segmentation import overlap
 from nostalgin_core.records import Box, Instance, Photo, Rejection
-from nostalgin_core.segment import Network, segment
-from nostalgin_core.target import WEIGHTS, features
+from nostalgin_core.segment import Network
 
 Fronts = tuple[Float[np.ndarray, "n 6"], Bool[np.ndarray, " n"]]
 LABELLED_SCORE = 0.9
@@ -55,16 +56,17 @@ def fronts(samples: Iterable[Sample], network: Network) -> list[Fronts]:
         targets = [t for t in sample.things if t.target]
         height, width = sample.image.shape
         photo = Photo(sample.name, sample.image, Box(0, 0, width, height))
-        instances = segment(photo, network)
+        instances = segment.segment(photo, network)
         if not targets or isinstance(instances, Rejection):
             continue
-        board = facade.board(instances)
+        board = placard.board(instances)
+        aim = None if board is None else board.box
         shape = sample.image.shape
         aims = [fill(t.rings, shape) for t in targets]
         for masks, scores in (_labelled(sample), _found(photo, instances)):
             if masks:
                 rows = [
-                    features(m, s, photo.frame, board)
+                    features(m, s, photo.frame, aim)
                     for m, s in zip(masks, scores, strict=True)
                 ]
                 recorded = [max(overlap(m, a) for a in aims) >= 0.5 for m in masks]
@@ -85,9 +87,10 @@ def _labelled(sample: Sample) -> tuple[list[Mask], list[float]]:
 def _found(
     photo: Photo, instances: Sequence[Instance]
 ) -> tuple[list[Mask], list[float]]:
-    facades = facade.arrange(photo, instances)
-    if isinstance(facades, Rejection):
+    found = matte.fronts(photo, instances)
+    if isinstance(found, Rejection):
         return [], []
+    _, facades = found
     return [f.mask for f in facades], [f.score for f in facades]
 
 

@@ -19,9 +19,10 @@ import torch
 from export.mask_rcnn import MaskRCNN, load_weights
 from export.segmentation_data import Sample, fill, read_folder
 from export.weights import read_weights
-from nostalgin_core.measure_segmentation import agreement, overlap
+from nostalgin_core import segment
+from nostalgin_core.measure.segmentation import agreement, overlap
 from nostalgin_core.records import Box, Instance, Photo, Rejection
-from nostalgin_core.segment import Network, segment
+from nostalgin_core.segment import Network
 
 
 def as_callable(network: MaskRCNN) -> Network:
@@ -64,7 +65,7 @@ def found(network: Network, sample: Sample) -> tuple[Instance, ...]:
     """Segment a sample, frame and all; nothing where it was rejected."""
     height, width = sample.image.shape
     photo = Photo(sample.name, sample.image, Box(0, 0, width, height))
-    instances = segment(photo, network)
+    instances = segment.segment(photo, network)
     return () if isinstance(instances, Rejection) else instances
 
 

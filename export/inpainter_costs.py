@@ -25,8 +25,8 @@ import numpy as np
 
 from nostalgin_core import evidence, session
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.inpaint import Network, low_memory, whole
-from nostalgin_core.measure_inpainting import elevation
+from nostalgin_core.inpaint.inpaint import Network, low_memory, whole
+from nostalgin_core.measure.inpainting import elevation
 
 MODELS = Path(__file__).parents[1] / "nostalgin_core" / "models"
 BASELINE = (26, 1)  # width and stride (paper, section 4.3)

@@ -8,7 +8,7 @@ from export.inpainter import Generator
 from export.inpainting_data import Sheet
 from export.inpainting_samples import Sample, guessed, tensors
 from nostalgin_core.arrays import Gray
-from nostalgin_core.free_form import free_form_share
+from nostalgin_core.measure.free_form import free_form_share
 
 
 def exam(pictures: tuple[Sheet, ...], *, count: int = 24) -> list[Sample]:

@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.labelled_fronts import (
+from nostalgin_core.measure.labelled_fronts import (
     LARGEST_PX,
     held_out,
     size_of,

@@ -14,8 +14,8 @@ from torch import Tensor
 from export.inpainting_data import Kind, Sheet
 from export.masks import Outline, standing
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.free_form import free_form_share
-from nostalgin_core.repetition import guess
+from nostalgin_core.inpaint.repetition import guess
+from nostalgin_core.measure.free_form import free_form_share
 
 AT_FOOT = 0.5  # share of holes that are silhouettes at the foot, the harder kind
 

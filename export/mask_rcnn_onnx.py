@@ -24,7 +24,7 @@ from export.mask_rcnn import MaskRCNN, load_weights
 from export.shipping import SMALLEST_HALVED, lock, shipped
 from export.weights import mean_weights
 from nostalgin_core import session
-from nostalgin_core.segment import prepared
+from nostalgin_core.segment.segment import prepared
 
 OPSET = 17
 OUTPUTS = ("boxes", "labels", "scores", "masks")

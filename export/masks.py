@@ -1,14 +1,14 @@
 """Holes to learn on: people, cars and posts standing at the foot of a front.
 
-How they stand is told in `nostalgin_core.standing`; here their outlines are read.
-Free-form strokes are drawn by `nostalgin_core.free_form`.
+How they stand is told in `nostalgin_core.measure.standing`; here their outlines are
+read. Free-form strokes are drawn by `nostalgin_core.measure.free_form`.
 """
 
 import json
 from pathlib import Path
 
-from nostalgin_core.labelled_fronts import HELD_OUT_BLOCK
-from nostalgin_core.standing import Outline, silhouettes, standing
+from nostalgin_core.measure.labelled_fronts import HELD_OUT_BLOCK
+from nostalgin_core.measure.standing import Outline, silhouettes, standing
 
 __all__ = ["Outline", "outlines", "standing"]
 

@@ -21,7 +21,8 @@ from export.painted_segmentation_data import rings
 from export.segmentation_data import Sample, Thing
 from nostalgin_core.arrays import Gray, Mask
 from nostalgin_core.records import Box, Instance, Photo
-from nostalgin_core.segment import CATEGORIES, Network, everything
+from nostalgin_core.segment import CATEGORIES, Network
+from nostalgin_core.segment.segment import everything
 
 VIEWS = ((416, False), (416, True), (352, False), (512, False))  # short side, mirrored
 SAME = 0.5  # overlap at which two views speak of one thing

@@ -14,6 +14,8 @@ BEYOND_FRAME: Final = 4  # outside the photo's exposed frame, filled
 COPIED: Final = 5  # copied from another side of the building
 ASSUMED: Final = 6  # no photograph: a plain volume
 
+SEEN: Final = 0.95  # alpha above which a texel is the front's alone, no soft edge
+
 NAMES: Final = {
     NOTHING: "nothing",
     PHOTOGRAPHED: "photographed",
@@ -22,4 +24,15 @@ NAMES: Final = {
     BEYOND_FRAME: "filled beyond the photo's frame",
     COPIED: "copied from another side",
     ASSUMED: "assumed",
+}
+
+# Multiplying a photograph by these tints it: what a camera saw stays as it is.
+TINTS: Final = {  # red, green, blue
+    NOTHING: (0, 0, 0),
+    PHOTOGRAPHED: (255, 255, 255),
+    SOFT_EDGE: (255, 244, 190),
+    INPAINTED: (255, 150, 70),
+    BEYOND_FRAME: (235, 90, 120),
+    COPIED: (90, 170, 255),
+    ASSUMED: (170, 140, 230),
 }

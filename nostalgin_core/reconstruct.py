@@ -7,9 +7,9 @@ the pipeline writes equals what this loop returns, byte for byte.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from nostalgin_core import model, quantise, settle, steps
+from nostalgin_core import block, model, quantise, steps
+from nostalgin_core.block import Settled
 from nostalgin_core.records import Front, Photo, Rejection, Seen
-from nostalgin_core.settle import Settled
 from nostalgin_core.steps import Networks, Stages
 
 
@@ -45,7 +45,7 @@ def rebuild(
         for file, one in made.items()
         if one.photo is not None and one.rectified
     }
-    settled = settle.settle(name, fronts, candidates, seen)
+    settled = block.settle(name, fronts, candidates, seen)
     finished = {
         (one.photo.key, view.facade): quantise.elevation(view)
         for one in made.values()

@@ -50,12 +50,6 @@ class Stages:
     rejections: tuple[Rejection, ...] = field(default=())
 
 
-def board(instances: tuple[Instance, ...]) -> Instance | None:
-    """Choose the placard that the network is surest of."""
-    boards = [one for one in instances if one.category == "placard"]
-    return max(boards, key=lambda one: one.score, default=None)
-
-
 def steps(
     data: bytes, networks: Networks, *, name: str, every: bool = True
 ) -> Iterator[tuple[str, Any]]:
@@ -78,7 +72,7 @@ def steps(
     instances = quantise.instances(instances)
     yield "segment", instances
     if networks.read is not None:
-        yield "placard", placard.read(picture, board(instances), networks.read)
+        yield "placard", placard.read(picture, placard.board(instances), networks.read)
     matted = matte.matte(picture, instances)
     if isinstance(matted, Rejection):
         yield "matte", matted

@@ -5,7 +5,6 @@ Beam and the networks are imported by the commands that need them, so that `--he
 answers at once.
 """
 
-import logging
 import os
 import sys
 import time
@@ -14,10 +13,9 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines import examples
+from pipelines.console import Voice, errors, examples, fail, unwritable
 from pipelines.evaluate import commands
-from pipelines.failure import errors, fail, unwritable
-from pipelines.voice import Voice, summed
+from pipelines.launch import built, told
 
 TOO_MANY_REJECTIONS: Final = 3
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
@@ -74,8 +72,8 @@ def explain_command(
     from pipelines.models import one_thread
 
     one_thread()
+    from pipelines import explain
     from pipelines import models as shelf
-    from pipelines.explain import Unreadable, explain
 
     try:
         data = photo.read_bytes()
@@ -83,8 +81,8 @@ def explain_command(
         raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
     try:
         networks = shelf.Models(str(models or shelf.PACKAGED)).networks(placard=placard)
-        report = explain(data, out, networks, started=started, every=every)
-    except Unreadable as problem:
+        report = explain.explain(data, out, networks, started=started, every=every)
+    except explain.Unreadable as problem:
         raise fail(f"{photo}: {problem}") from problem
     except shelf.Unlocked as problem:
         raise fail(str(problem)) from problem
@@ -123,14 +121,14 @@ def index_command(
     It is written as manifest.csv too, to be mended by hand; docs/manifest.md describes
     its columns.
     """
-    from pipelines.index import Nothing, index
+    from pipelines import index
 
     voice = Voice(errors, machine=json_lines)
     try:
-        made = index(
+        made = index.index(
             photos, catalogue, city, blocks=block or (), credit=credit, title=title
         )
-    except Nothing as problem:
+    except index.Nothing as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
@@ -177,30 +175,9 @@ def build_command(
     What was done before is found and kept, so a run that was stopped goes on where it
     was. All other options go to Beam.
     """
-    from pipelines.models import one_thread
-
-    one_thread()
-    logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
-    from pipelines.build import Lost, build
-    from pipelines.hush import hushed
-    from pipelines.manifest import Unusable
-    from pipelines.models import Unlocked
-    from pipelines.options import options
-    from pipelines.site import ViewerMissingError
-
     voice = Voice(errors, machine=json_lines)
-    try:
-        chosen = options(city, models=str(models or ""), shard=shard, beam=context.args)
-    except ValueError as problem:
-        raise typer.BadParameter(str(problem)) from problem
-    try:
-        with hushed(errors):
-            report = build(chosen, voice)
-    except (Unusable, Unlocked, Lost, ViewerMissingError) as problem:
-        raise fail(str(problem)) from problem
-    except OSError as problem:
-        raise unwritable(city, problem) from problem
-    summed(report, voice)
+    folder = str(models or "")
+    report = built(city, voice, models=folder, shard=shard, beam=context.args)
     if report.rejected_share > max_rejected or not (report.blocks or shard):
         raise typer.Exit(TOO_MANY_REJECTIONS)
 
@@ -253,14 +230,8 @@ def demo_command(
     from pipelines.models import one_thread
 
     one_thread()
-    logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
-    from pipelines.build import Lost, build
+    from pipelines import index
     from pipelines.demo import CREDIT, TITLE, painted
-    from pipelines.hush import hushed
-    from pipelines.index import index
-    from pipelines.models import Unlocked
-    from pipelines.options import options
-    from pipelines.site import ViewerMissingError
     from pipelines.view import view
 
     voice = Voice(errors, machine=json_lines)
@@ -271,20 +242,14 @@ def demo_command(
             voice.say("painted", words, done=done, whole=whole)
 
     workers = [f"--direct_num_workers={min(os.cpu_count() or 1, MOST_WORKERS)}"]
-    try:
-        chosen = options(str(folder), beam=context.args or workers)
-    except ValueError as problem:
-        raise typer.BadParameter(str(problem)) from problem
+    beam = context.args or workers
+    told(str(folder), beam=beam)  # a mistyped option is told before anything is painted
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
-        index(photos, listed, str(folder), credit=CREDIT, title=TITLE)
-        with hushed(errors):
-            report = build(chosen, voice)
-    except (Unlocked, Lost, ViewerMissingError) as problem:
-        raise fail(str(problem)) from problem
+        index.index(photos, listed, str(folder), credit=CREDIT, title=TITLE)
     except OSError as problem:
         raise unwritable(folder, problem) from problem
-    summed(report, voice)
+    built(str(folder), voice, beam=beam)
     site = folder / "site"
     voice.say(
         "site", f"the site lies in {site}: nostalgin view {folder}", site=str(site)

@@ -8,13 +8,13 @@ from typing import Final
 import cv2
 import numpy as np
 
+from nostalgin_core import scenes
 from nostalgin_core.scenes import (
     Lot,
     Neighbourhood,
     catalogue_rows,
     neighbourhood,
     photo_name,
-    photograph,
 )
 
 SEED: Final = 1940
@@ -61,7 +61,7 @@ def views(city: Neighbourhood) -> Iterator[tuple[Lot, int]]:
 def write(path: Path, city: Neighbourhood, lot: Lot, view: int, seed: int) -> None:
     """Paint one photo, wholly or not at all; its seed is its own."""
     rng = np.random.default_rng([seed, int(lot.block), int(lot.lot), view])
-    image = photograph(city, lot, rng, view=view).image
+    image = scenes.photograph(city, lot, rng, view=view).image
     _, code = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
     partial = path.with_suffix(".partial")
     partial.write_bytes(code.tobytes())

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 LOCK: Final = "models.lock"
+NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
 
 
@@ -73,7 +74,8 @@ class Models:
         from nostalgin_core.steps import Networks
 
         read = reader() if placard else None
-        return Networks(self.load("segment"), self.load("inpaint"), read)
+        segment, inpaint = map(self.load, NETWORKS)
+        return Networks(segment, inpaint, read)
 
 
 class Once:

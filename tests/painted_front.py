@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from nostalgin_core import camera, homography, upright
+from nostalgin_core import homography
 from nostalgin_core.records import Box, Facade, Matted, Photo
+from nostalgin_core.rectify import camera, upright
 
 SHAPE = (800, 600)
 

@@ -17,12 +17,12 @@ const licences = {
 };
 
 // The result is plain files with relative addresses, so that any web server, in any
-// folder, will do. The Python wheel carries it as `pipelines/viewer_dist`.
+// folder, will do. The Python wheel carries it as `pipelines/site/viewer_dist`.
 export default defineConfig({
   base: './',
   plugins: [licences],
   build: {
-    outDir: '../pipelines/viewer_dist',
+    outDir: '../pipelines/site/viewer_dist',
     emptyOutDir: true,
     target: 'es2022',
     assetsInlineLimit: 0,

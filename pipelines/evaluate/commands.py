@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
-from pipelines.failure import fail
+from pipelines.console import fail
 
 app = typer.Typer(
     help="Measure a stage against labelled data.",

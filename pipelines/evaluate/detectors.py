@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import contours
 from nostalgin_core.arrays import Gray, Mask
+from nostalgin_core.rectify import contours
 
 SHORTEST_PX = 8.0  # as for ours
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from nostalgin_core.inpaint import Network
-from nostalgin_core.measure_inpainting import Fill, mark, methods, summary
+from nostalgin_core.inpaint.inpaint import Network
+from nostalgin_core.measure.inpainting import Fill, mark, methods, summary
 from pipelines.evaluate import Unmeasurable
 from pipelines.evaluate.inpainting_questions import HOLES, Asked, asked, kind
 from pipelines.evaluate.patchmatch import SMALL_RADIUS_PX, available, patchmatch

@@ -15,14 +15,14 @@ import cv2
 import numpy as np
 
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.labelled_fronts import (
+from nostalgin_core.measure.inpainting import Question, answerable, ask, ask_at_foot
+from nostalgin_core.measure.labelled_fronts import (
     HELD_OUT_BLOCK,
     LARGEST_PX,
     held_out,
     straightened,
 )
-from nostalgin_core.measure_inpainting import Question, answerable, ask, ask_at_foot
-from nostalgin_core.standing import Outline, silhouettes
+from nostalgin_core.measure.standing import Outline, silhouettes
 from pipelines.evaluate import Unmeasurable
 from pipelines.evaluate.labels import PICTURES, pairs
 

@@ -11,10 +11,11 @@ from typing import Any, Final
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import camera, measure_coverage
 from nostalgin_core.arrays import Corners, Matrix3
-from nostalgin_core.measure_rectification import angle_deg
+from nostalgin_core.measure import coverage as measure
+from nostalgin_core.measure.rectification import angle_deg
 from nostalgin_core.records import Box, Elevation
+from nostalgin_core.rectify import camera
 from pipelines.evaluate.labelled import Labelled
 from pipelines.evaluate.streets import Residual
 
@@ -31,7 +32,7 @@ def coverage(photographs: list[Labelled]) -> dict[str, Any]:
         mine = [one for one in residuals if one.quantity == name]
         for method in ("all", *sorted({one.method for one in mine})):
             group = [one for one in mine if method in ("all", one.method)]
-            result = measure_coverage.coverage(
+            result = measure.coverage(
                 np.array([one.error for one in group]),
                 np.array([one.sd for one in group]),
             )

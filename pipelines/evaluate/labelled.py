@@ -15,15 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from nostalgin_core import lines, measure_rectification, photo, rectify
-from nostalgin_core.records import (
-    Elevation,
-    Facade,
-    Matted,
-    Occluder,
-    Photo,
-    Rejection,
-)
+from nostalgin_core import photo, rectify
+from nostalgin_core.measure import rectification
+from nostalgin_core.records import Elevation, Facade, Matted, Occluder, Photo, Rejection
+from nostalgin_core.rectify import lines
 from pipelines.evaluate import Unmeasurable, labels
 
 
@@ -101,7 +96,7 @@ def worst_angle_deg(
     if not isinstance(result, Elevation):
         return None
     quad = np.array(front["quad"], np.float64)
-    return measure_rectification.worst_angle_deg(quad, result.photo_from_elevation)
+    return rectification.worst_angle_deg(quad, result.photo_from_elevation)
 
 
 def _quantile(values: list[float], share: float) -> float | None:

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
-from nostalgin_core import frame, photo, scenes
+from nostalgin_core import photo, scenes
 from nostalgin_core.arrays import Matrix3
 from nostalgin_core.records import Facade, Matted, Photo
 
@@ -114,7 +114,7 @@ def unpacked(arrays: dict[str, np.ndarray]) -> Painted:
         for index, target in enumerate(arrays["target"])
     )
     return Painted(
-        Photo(photo.key(image.tobytes()), image, frame.exposed(image)),
+        Photo(photo.key(image.tobytes()), image, photo.exposed(image)),
         Matted(facades, ()),
         arrays["quad"],
         arrays["points"],

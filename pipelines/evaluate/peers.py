@@ -13,10 +13,10 @@ from typing import Any
 import cv2
 import numpy as np
 
-from nostalgin_core import camera
 from nostalgin_core.arrays import Gray
-from nostalgin_core.manhattan import Manhattan
 from nostalgin_core.records import Box
+from nostalgin_core.rectify import camera
+from nostalgin_core.rectify.manhattan import Manhattan
 
 SEED = 1337  # of its documentation's example
 

@@ -15,9 +15,9 @@ import cv2
 import numpy as np
 from jaxtyping import Float, Int, UInt8
 
-from nostalgin_core import camera, lines, orient, upright, vanish
 from nostalgin_core.arrays import Homogeneous, Mask
 from nostalgin_core.records import Matted, Photo
+from nostalgin_core.rectify import camera, lines, orient, upright, vanish
 
 UP = (60, 60, 240)
 ACROSS: Final = (

@@ -11,7 +11,7 @@ The painted streets need no data. Each part is told in the module that measures 
 from pathlib import Path
 from typing import Any, Final
 
-from nostalgin_core import lines
+from nostalgin_core.rectify import lines
 from pipelines.evaluate import (
     Unmeasurable,
     detectors,

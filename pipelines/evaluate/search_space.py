@@ -16,9 +16,9 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import camera, lines, vanish
 from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Box
+from nostalgin_core.rectify import camera, lines, vanish
 from pipelines.evaluate import Unmeasurable, sphere
 
 SHORT_SIDE_PX = 2048

@@ -22,17 +22,18 @@ from typing import Any, Final
 
 import numpy as np
 
-from nostalgin_core import matte, photo, quantise, segment
+from nostalgin_core import matte, photo, quantise
 from nostalgin_core.arrays import Mask
-from nostalgin_core.measure_detection import (
+from nostalgin_core.measure.detection import (
     Matches,
     average_precision,
     matches,
     together,
 )
-from nostalgin_core.measure_segmentation import Agreement, agreement, overlap
+from nostalgin_core.measure.segmentation import Agreement, agreement, overlap
 from nostalgin_core.records import Instance, Matted, Rejection
 from nostalgin_core.segment import CATEGORIES, Network
+from nostalgin_core.segment.segment import everything, trusted
 from pipelines.evaluate import Unmeasurable, labels
 from pipelines.evaluate.labels import Truth
 
@@ -88,10 +89,10 @@ def answered(file: Path, network: Network) -> Answer:
         raise Unmeasurable(f"{file}: {decoded.reason}: {decoded.detail}")
     shape = decoded.image.shape
     start = time.process_time()
-    every = segment.everything(decoded, network, least=UNSURE)
+    every = everything(decoded, network, least=UNSURE)
     segmented = time.process_time()
     every = quantise.instances(every)
-    result = segment.trusted(decoded, every)
+    result = trusted(decoded, every)
     if not isinstance(result, Rejection):
         result = quantise.instances(result)
         before = time.process_time()

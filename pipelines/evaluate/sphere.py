@@ -12,8 +12,8 @@ the camera and a line.
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core import vanish
 from nostalgin_core.arrays import Lines
+from nostalgin_core.rectify import vanish
 
 ROUNDS = 30  # at most; most points stand still after five to eight
 STILL_DEG = 1e-3  # a step below a hundredth of what is asked of a point

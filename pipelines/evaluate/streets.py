@@ -20,9 +20,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from nostalgin_core import lines, measure_coverage, rectify
-from nostalgin_core import measure_rectification as measure
+from nostalgin_core import rectify
+from nostalgin_core.measure import coverage
+from nostalgin_core.measure import rectification as measure
 from nostalgin_core.records import Elevation, Rejection
+from nostalgin_core.rectify import lines
 from pipelines.evaluate.painted import SEED, Painted, paintings
 
 QUANTITIES: Final = ("horizontal", "vertical", "focal", "aspect")
@@ -160,7 +162,7 @@ def covered(residuals: list[Residual]) -> dict[str, Any]:
         groups = {"all": mine}
         groups |= {m: [one for one in mine if one.method == m] for m in methods}
         for method, group in groups.items():
-            result = measure_coverage.coverage(
+            result = coverage.coverage(
                 np.array([one.error for one in group]),
                 np.array([one.sd for one in group]),
             )

@@ -20,8 +20,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy import io as matlab
 
-from nostalgin_core import lines, manhattan, measure_rectification
 from nostalgin_core.arrays import Gray, Matrix3
+from nostalgin_core.measure import rectification
+from nostalgin_core.rectify import lines, manhattan
 from pipelines.evaluate import Unmeasurable, peers
 
 TRUTH = "*/*GroundTruthVP_Orthogonal_CamParams.mat"
@@ -111,9 +112,7 @@ def measured(find: Finder, views: list[View], true_camera: Matrix3) -> dict[str,
         seconds.append(time.process_time() - start)
         points = None if found is None else found.vanishing_points
         errors.append(
-            measure_rectification.direction_errors_deg(
-                points, view.directions, true_camera
-            )
+            rectification.direction_errors_deg(points, view.directions, true_camera)
         )
         horizons.append(_horizon_error(points, view, true_camera))
         focal = true_camera[0, 0]
@@ -122,7 +121,7 @@ def measured(find: Finder, views: list[View], true_camera: Matrix3) -> dict[str,
         "images": len(views),
         "median_deg": float(np.median(errors)),
         "mean_deg": float(np.mean(errors)),
-        "horizon_auc": measure_rectification.area_under_curve(np.array(horizons)),
+        "horizon_auc": rectification.area_under_curve(np.array(horizons)),
         "focal_error_percent": 100 * float(np.median(focals)),
         "cpu_seconds_median": float(np.median(seconds)),
     }
@@ -136,6 +135,6 @@ def _horizon_error(
         return 1.0
     upright = np.argmax(np.abs(view.directions[:, 1]))
     level = np.delete(view.directions, upright, axis=0) @ true_camera.T
-    return measure_rectification.horizon_error(
+    return rectification.horizon_error(
         np.cross(points[1], points[2]), np.cross(level[0], level[1]), view.image.shape
     )

@@ -16,11 +16,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from nostalgin_core import facade, photo, segment
+from nostalgin_core import matte, segment
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.measure_segmentation import Agreement, agreement
+from nostalgin_core.matte.facade import covered_by
+from nostalgin_core.measure.segmentation import Agreement, agreement
+from nostalgin_core.photo import photo
 from nostalgin_core.records import Photo, Rejection
-from nostalgin_core.segment import Network
+from nostalgin_core.segment.segment import Network
 from pipelines import models as shelf
 from pipelines.evaluate import labels
 from pipelines.evaluate.labels import Truth
@@ -94,11 +96,12 @@ def answered(image: Photo, network: Network) -> tuple[Mask, Mask]:
     """Tell what is claimed as visible front, and what as hiding."""
     shape = image.image.shape
     found = segment.segment(image, network)
-    fronts = None if isinstance(found, Rejection) else facade.arrange(image, found)
-    if isinstance(found, Rejection) or not isinstance(fronts, tuple):
+    fronts = found if isinstance(found, Rejection) else matte.fronts(image, found)
+    if isinstance(fronts, Rejection):
         return np.zeros(shape, bool), np.zeros(shape, bool)
-    hidden = facade.covered_by(found, shape)
-    claimed = labels.union([one.mask for one in fronts], shape)
+    instances, facades = fronts
+    hidden = covered_by(instances, shape)
+    claimed = labels.union([one.mask for one in facades], shape)
     return claimed & ~hidden, hidden
 
 

@@ -15,13 +15,13 @@ from pathlib import Path
 from rich.console import Console
 
 from nostalgin_core import steps
-from pipelines.build import build
+from pipelines.build.build import build
+from pipelines.build.options import options
+from pipelines.console.hush import hushed
+from pipelines.console.voice import Voice
 from pipelines.demo import painted
-from pipelines.hush import hushed
-from pipelines.index import index
+from pipelines.index.index import index
 from pipelines.models import Models, one_thread
-from pipelines.options import options
-from pipelines.voice import Voice
 
 KIB = 1024
 

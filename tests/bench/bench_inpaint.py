@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 
 from nostalgin_core import evidence, session
-from nostalgin_core.inpaint import low_memory, whole
-from nostalgin_core.measure_inpainting import elevation, navier_stokes
+from nostalgin_core.inpaint.inpaint import low_memory, whole
+from nostalgin_core.measure.inpainting import elevation, navier_stokes
 from nostalgin_core.records import Elevation
 
 MODELS = Path(__file__).parents[2] / "nostalgin_core" / "models"

@@ -18,8 +18,8 @@ from typing import Any
 import cv2
 import numpy as np
 
-from nostalgin_core import closed_form
-from nostalgin_core.trimap import BACKGROUND, FOREGROUND, UNKNOWN, signed_distance
+from nostalgin_core.matte import closed_form
+from nostalgin_core.matte.trimap import BACKGROUND, FOREGROUND, UNKNOWN, signed_distance
 
 
 def front(h: int, w: int, *, band_px: int) -> tuple[np.ndarray, np.ndarray]:

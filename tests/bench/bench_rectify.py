@@ -14,9 +14,10 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from nostalgin_core import manhattan, orient, rectify, vanish
-from nostalgin_core.measure_rectification import worst_angle_deg
+from nostalgin_core import rectify
+from nostalgin_core.measure.rectification import worst_angle_deg
 from nostalgin_core.records import Elevation
+from nostalgin_core.rectify import manhattan, orient, vanish
 from pipelines.evaluate import detectors
 from pipelines.evaluate.painted import Painted, paintings
 

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from nostalgin_core import atlas, evidence, facts, gltf, mesh, picture, tileset
+from nostalgin_core import city, evidence
+from nostalgin_core.block import Settled, raised
+from nostalgin_core.model import atlas, facts, gltf, mesh, picture
 from nostalgin_core.records import (
     Assignment,
     Block,
@@ -16,7 +18,6 @@ from nostalgin_core.records import (
     Seen,
     Texture,
 )
-from nostalgin_core.settle import Settled, raised
 
 # lot, side, street, address, width, depth, storeys (0: no photograph)
 LOTS = (
@@ -244,7 +245,7 @@ def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
         (folder / "blocks" / f"{name}.glb").write_bytes(data)
         low, high = bounds(made)
         origin = (0.0, index * 90.0)
-        tiles.append(tileset.Tile(f"blocks/{name}.glb", low, high, origin_m=origin))
+        tiles.append(city.Tile(f"blocks/{name}.glb", low, high, origin_m=origin))
         table = known(name)
         columns = [
             value if isinstance(value, list) else value.tolist()
@@ -253,7 +254,7 @@ def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
         rows += [
             dict(zip(table, row, strict=True)) for row in zip(*columns, strict=True)
         ]
-    text = json.dumps(tileset.tileset(tiles), indent=1)
+    text = json.dumps(city.tileset(tiles), indent=1)
     (folder / "tileset.json").write_text(text)
     (folder / "buildings.json").write_text(json.dumps(rows, indent=1))
 

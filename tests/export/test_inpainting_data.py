@@ -10,8 +10,8 @@ from export.inpainter_exam import exam, marks
 from export.inpainting_data import Sheet, fronts, held_out, painted, straighten
 from export.masks import outlines, standing
 from export.train_inpainter import Recipe, Trainer, batch
-from nostalgin_core.free_form import free_form, free_form_share
 from nostalgin_core.homography import between
+from nostalgin_core.measure.free_form import free_form, free_form_share
 
 SQUARE = np.array([[-0.5, -1.0], [0.5, -1.0], [0.5, 0.0], [-0.5, 0.0]])
 

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from onnx import TensorProto, helper, numpy_helper
 
-from pipelines.index import index
+from pipelines.index.index import index
 
 SIZE = (640, 480)  # h, w
 LEFT = np.array([[40, 80], [230, 140], [230, 560], [40, 600]], np.float32)

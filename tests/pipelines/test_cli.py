@@ -132,7 +132,7 @@ def test_a_build_of_which_no_block_comes_points_at_no_run(
     def crash(*_: object) -> None:
         raise ArithmeticError("no block can be made")
 
-    monkeypatch.setattr("pipelines.blocks.glb", crash)
+    monkeypatch.setattr("pipelines.build.blocks.glb", crash)
     city = painted.write_city(tmp_path)
     for name in ("5_1.png", "5_2.jpg", "5_2a.png", "6_1.png"):
         (tmp_path / "photos" / name).write_bytes(b"")

@@ -9,7 +9,9 @@ from typing import Any
 
 import pytest
 
-from pipelines import site, site_record, view
+from pipelines.site import site
+from pipelines import view
+from pipelines.site.record import record
 from tests.core import sample_block
 
 CHROMIUM = Path(os.environ.get("NOSTALGIN_CHROMIUM", "/usr/bin/chromium"))
@@ -24,7 +26,7 @@ def model(name: str, origin_m: tuple[float, float]) -> site.BlockModel:
         one.photo: {"credit": HOSTILE, "caption": f"Plate {one.photo}"}
         for one in sample_block.assignments(name)
     }
-    record = site_record.record(
+    known = record(
         block,
         fronts=sample_block.fronts(name),
         assignments=sample_block.assignments(name),
@@ -32,7 +34,7 @@ def model(name: str, origin_m: tuple[float, float]) -> site.BlockModel:
         photos=photos,
     )
     low, high = sample_block.bounds(block)
-    return site.BlockModel(name, glb, record, low, high, origin_m)
+    return site.BlockModel(name, glb, known, low, high, origin_m)
 
 
 def thumbnails() -> dict[str, bytes]:

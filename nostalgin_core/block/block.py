@@ -1,0 +1,288 @@
+"""The buildings of one tax block, its rings laid out on one ground plane.
+
+A ring is placed on its own (`chain`); the rings of a block face each other over the
+street that cuts it, and blocks face each other over the street between them. So one
+rule lays out both: two sides on the same street are turned to face, its width apart.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+
+import numpy as np
+from jaxtyping import Float
+
+from nostalgin_core.address import house_numbers, street_width
+from nostalgin_core.arrays import Points
+from nostalgin_core.block.chain import Footprint, Ring, chain
+from nostalgin_core.block.cuboid import ASSUMED_M, Shown, cuboid
+from nostalgin_core.block.outline import nominal_headings
+from nostalgin_core.records import Assignment, Block, Building, Front, Texture
+
+FALLBACK_GAP_M = 24.0
+NEIGHBOURS = 4
+WIDTH_SD, HEIGHT_SD = 0.4, 0.6  # of the logarithms: heights vary more than widths
+
+Aspects = Mapping[Texture, tuple[float, float]]  # aspect and its spread
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One side of an outline, as a placed line along a street."""
+
+    street: str
+    start_m: Float[np.ndarray, " 2"]
+    end_m: Float[np.ndarray, " 2"]
+
+
+def block(
+    name: str,
+    fronts: Sequence[Front],
+    assignments: Sequence[Assignment],
+    aspects: Aspects,
+    *,
+    copied: bool = False,
+) -> Block:
+    """Build the cuboids of one block, ring by ring, in the order of its fronts.
+
+    Raises:
+        ValueError: if there are no fronts.
+    """
+    if not fronts:
+        raise ValueError(f"block {name!r} has no fronts")
+    shown = elevations(assignments, aspects)
+    fronts = with_seen_widths(fronts, shown)
+    numbers = sorted({front.ring for front in fronts})
+    rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
+    placed = laid_out(list(zip(chained(rings), rings, strict=True)))
+    footprints = _distinct([one for ring in placed for one in ring.footprints])
+    return Block(
+        block=name,
+        buildings=tuple(raised(footprints, shown, copied=copied)),
+        outline_m=tuple(ring.outline_m for ring in placed),
+    )
+
+
+def _distinct(footprints: Sequence[Footprint]) -> list[Footprint]:
+    """Rename buildings of a lot that stands in several rings, but for the first."""
+    used: set[str] = set()
+    unique = []
+    for footprint in footprints:
+        name, count = footprint.building_id, 1
+        while name in used:
+            count += 1
+            name = f"{footprint.building_id}-{count}"
+        used.add(name)
+        unique.append(replace(footprint, building_id=name))
+    return unique
+
+
+def elevations(
+    assignments: Sequence[Assignment], aspects: Aspects
+) -> dict[str, list[Shown]]:
+    """List what shows each front."""
+    shown: dict[str, list[Shown]] = {}
+    for one in assignments:
+        texture = (one.photo, one.facade)
+        shown.setdefault(one.front_id, []).append(
+            Shown(texture, *aspects[texture], score=one.score)
+        )
+    return shown
+
+
+def with_seen_widths(
+    fronts: Sequence[Front], shown: Mapping[str, Sequence[Shown]]
+) -> list[Front]:
+    """Mend assumed widths by the proportions of what a photograph shows.
+
+    Both fronts of a building are equally high, so that w2 = w1 a2 / a1 where one width
+    is known: two facades specify the cuboid. Else width and height are both guesses:
+    with w0 the assumed width, h0 a common height and s their spreads (as logarithms),
+    the likeliest width is the weighted mean of ln w0 and ln(h0 a).
+    """
+    best = {
+        front_id: max(some, key=lambda one: (one.score, one.texture))
+        for front_id, some in shown.items()
+    }
+    known = {
+        (front.block, front.lot): front
+        for front in fronts
+        if not front.width_assumed and front.front_id in best
+    }
+    trust = WIDTH_SD**2 / (WIDTH_SD**2 + HEIGHT_SD**2)  # in the height
+
+    def widened(front: Front) -> Front:
+        if not front.width_assumed or front.front_id not in best:
+            return front
+        aspect = best[front.front_id].aspect
+        other = known.get((front.block, front.lot))
+        if other is not None:
+            width_m = other.width_m * aspect / best[other.front_id].aspect
+        else:
+            width_m = front.width_m ** (1 - trust) * (ASSUMED_M * aspect) ** trust
+        return replace(front, width_m=width_m)
+
+    return [widened(front) for front in fronts]
+
+
+def raised(
+    footprints: Sequence[Footprint],
+    shown: Mapping[str, Sequence[Shown]],
+    *,
+    copied: bool = False,
+) -> list[Building]:
+    """Raise all buildings; those without a height get their neighbours' median."""
+    first = [cuboid(footprint, shown, copied=copied) for footprint in footprints]
+    seen = [
+        (i, building.height_m)
+        for i, building in enumerate(first)
+        if not building.assumed
+    ]
+
+    def neighbourly(index: int) -> float:
+        count = len(first)
+        near = sorted(
+            seen,
+            key=lambda one: min((one[0] - index) % count, (index - one[0]) % count),
+        )
+        return float(median(height_m for _, height_m in near[:NEIGHBOURS]))
+
+    return [
+        replace(one, height_m=neighbourly(index)) if one.assumed and seen else one
+        for index, one in enumerate(first)
+    ]
+
+
+def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
+    """Find the streets on which a block's rings face each other.
+
+    Two rings of one block share the streets that go on past both; the one that cuts
+    it is the street whose house numbers are odd on one ring and even on the other.
+    """
+    cutting = set()
+    for index, a in enumerate(rings):
+        for b in rings[index + 1 :]:
+            for street in {front.street for front in a} & {front.street for front in b}:
+                here, there = parities(a, street), parities(b, street)
+                if here and there and not here & there:
+                    cutting.add(street)
+    return frozenset(cutting)
+
+
+def parities(fronts: Sequence[Front], street: str) -> set[int]:
+    """Tell whether the house numbers on a street are odd (1) or even (0)."""
+    numbers = [
+        house_numbers(front.address) for front in fronts if front.street == street
+    ]
+    return {number[0] % 2 for number in numbers if number is not None}
+
+
+def chained(rings: Sequence[Sequence[Front]]) -> list[Ring]:
+    """Place each ring on its own, both sides of a cutting street leaning alike.
+
+    Each ring first says by itself how its side on such a street leans; all then take
+    the mean, so that the street is straight and the grid beyond it parallel.
+    """
+    cutting = cutting_streets(rings)
+    free = [
+        {front.side: front.street for front in ring if front.street in cutting}
+        for ring in rings
+    ]
+    alone = [
+        chain(ring, leaning=dict.fromkeys(sides))
+        for ring, sides in zip(rings, free, strict=True)
+    ]
+    leans: dict[str, list[float]] = {street: [] for street in cutting}
+    for ring, sides in zip(alone, free, strict=True):
+        nominal = nominal_headings(max(len(ring.headings_rad), 4))
+        for side, street in sides.items():
+            leans[street].append(ring.headings_rad[side] - float(nominal[side]))
+    return [
+        chain(
+            ring, leaning={side: float(np.mean(leans[s])) for side, s in sides.items()}
+        )
+        for ring, sides in zip(rings, free, strict=True)
+    ]
+
+
+def laid_out(rings: Sequence[tuple[Ring, Sequence[Front]]]) -> list[Ring]:
+    """Turn and move rings so that each faces one that lies already, the first as is."""
+    placed: list[Ring] = []
+    for ring, fronts in rings:
+        opposite = _facing(ring, fronts, placed, rings)
+        placed.append(opposite or _beside(ring, placed))
+    return placed
+
+
+def _facing(
+    ring: Ring,
+    fronts: Sequence[Front],
+    placed: Sequence[Ring],
+    rings: Sequence[tuple[Ring, Sequence[Front]]],
+) -> Ring | None:
+    for other, (_, theirs) in zip(placed, rings, strict=False):
+        cutting = cutting_streets([fronts, theirs])
+        mine = [side for side in sides(ring, fronts) if side.street in cutting]
+        yours = [side for side in sides(other, theirs) if side.street in cutting]
+        for a in mine:
+            for b in yours:
+                if a.street == b.street:
+                    return face(ring, a, b, gap_m=street_width(a.street))
+    return None
+
+
+def sides(ring: Ring, fronts: Sequence[Front]) -> list[Side]:
+    """Name the sides of a ring's outline by the streets of its fronts."""
+    ends = np.roll(ring.outline_m, -1, axis=0) if ring.closed else ring.outline_m[1:]
+    streets = {front.side: front.street for front in fronts}
+    return [
+        Side(streets[index], start, end)
+        for index, (start, end) in enumerate(zip(ring.outline_m, ends, strict=False))
+        if index in streets
+    ]
+
+
+def face(ring: Ring, side: Side, opposite: Side, *, gap_m: float) -> Ring:
+    """Turn and move a ring so that a side faces another over a gap, middles aligned."""
+    mine, yours = side.end_m - side.start_m, opposite.end_m - opposite.start_m
+    turn = np.arctan2(*yours[::-1]) + np.pi - np.arctan2(*mine[::-1])
+    outward = np.array([yours[1], -yours[0]]) / np.hypot(*yours)
+    target = (opposite.start_m + opposite.end_m) / 2 + gap_m * outward
+    return moved(ring, float(turn), target, pivot_m=(side.start_m + side.end_m) / 2)
+
+
+def moved(
+    ring: Ring,
+    turn_rad: float,
+    target_m: Float[np.ndarray, " 2"],
+    *,
+    pivot_m: Float[np.ndarray, " 2"],
+) -> Ring:
+    """Turn a ring about a pivot, then bring the pivot to a target."""
+    cos, sin = np.cos(turn_rad), np.sin(turn_rad)
+
+    def carry(points: Points) -> Points:
+        return (points - pivot_m) @ np.array([[cos, sin], [-sin, cos]]) + target_m
+
+    return replace(
+        ring,
+        outline_m=carry(ring.outline_m),
+        headings_rad=tuple(heading + turn_rad for heading in ring.headings_rad),
+        footprints=tuple(
+            replace(footprint, corners_m=carry(footprint.corners_m))
+            for footprint in ring.footprints
+        ),
+    )
+
+
+def _beside(ring: Ring, placed: Sequence[Ring]) -> Ring:
+    """Put a ring that faces no other to the east of all."""
+    if not placed:
+        return ring
+    right = max(_east(one).max() for one in placed)
+    shift = np.array([right + FALLBACK_GAP_M - _east(ring).min(), 0.0])
+    return moved(ring, 0.0, shift, pivot_m=np.zeros(2))
+
+
+def _east(ring: Ring) -> Float[np.ndarray, " n"]:
+    return np.concatenate([footprint.corners_m[:, 0] for footprint in ring.footprints])

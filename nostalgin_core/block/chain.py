@@ -1,0 +1,243 @@
+"""Fronts become footprints: the paper's algorithm 2, mended, round any ring.
+
+The paper (appendix, algorithm 2) walks from a front to its neighbour with a point
+(x, y) and a cardinal direction, and puts a cube at each step. As printed
+
+1. the pointer never moves, so the loop never ends: here each side is walked front by
+   front, and each ring side by side;
+2. it turns *before* it places a corner building, which so lands one side too far along
+   the new direction: here the building is placed first, then the walk turns at its far
+   edge;
+3. a corner building is met on both its sides and built twice: here it is built once,
+   from both its widths (one is its width, the other its depth);
+4. it turns only at a building with two known fronts, so that a ring without one never
+   closes: here every change of side is a corner, and where no lot has a front on both
+   streets, one of the two that meet there is given the corner;
+5. it turns by 90 degrees and does not check that the walk comes home: here the ring is
+   closed first (`outline`), opposite sides reconciled, with any number of sides.
+
+Party walls run along the neighbouring side at either end of a side, and turn gradually
+between; in a rectangular ring they are all square to the street, and every footprint is
+a rectangle. A ring of one side is a straight row, a ring of two sides an open corner.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from nostalgin_core.arrays import Corners, Points
+from nostalgin_core.block import outline
+from nostalgin_core.block.apart import apart
+from nostalgin_core.block.pieces import Piece, fitted, pieces, relative_sd, with_corners
+from nostalgin_core.records import Front
+
+Vector = Float[np.ndarray, " 2"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Footprint:
+    """Where one building stands."""
+
+    building_id: str
+    corners_m: Corners  # anticlockwise from the left end of its first front
+    front_ids: tuple[str | None, ...]  # one per edge
+    turns: int = 0  # corners of the ring that it stands round
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ring:
+    """A ring of fronts on the ground, its first side heading east from the origin."""
+
+    footprints: tuple[Footprint, ...]  # in order round the ring
+    outline_m: Points  # the corners, anticlockwise
+    headings_rad: tuple[float, ...]  # of each side, from east, anticlockwise
+    closed: bool
+
+
+def chain(
+    fronts: Sequence[Front], *, leaning: Mapping[int, float | None] | None = None
+) -> Ring:
+    """Place the fronts of one ring.
+
+    Sides of four-sided rings meet at right angles, but for those that are `leaning` (on
+    a street that cuts the grid, as Broadway): by so many radians from the right angle,
+    or, where that is None, by what the other sides' lengths say. Rings of three sides,
+    or five and more, are free throughout.
+
+    Raises:
+        ValueError: if there are no fronts.
+    """
+    if not fronts:
+        raise ValueError("a ring needs at least one front")
+    sides = with_corners(pieces(fronts))
+    closed = len(sides) > 2
+    if closed:
+        lengths_m, headings = outline.close(measured(sides, leaning or {}))
+    else:
+        lengths_m = np.array([sum(p.width_m for p in side) for side in sides])
+        headings = outline.nominal_headings(4)[: len(sides)]
+    starts_m = outline.corners(lengths_m, headings)
+    spans = [
+        fitted(side, length) for side, length in zip(sides, lengths_m, strict=True)
+    ]
+    footprints = _walked(sides, spans, starts_m, headings, closed=closed)
+    end_m = starts_m[-1] + lengths_m[-1] * _ahead(headings[-1])
+    return Ring(
+        footprints=tuple(_apart(footprints, starts_m if closed else None)),
+        outline_m=starts_m if closed else np.vstack([starts_m, end_m]),
+        headings_rad=tuple(float(heading) for heading in headings),
+        closed=closed,
+    )
+
+
+def measured(
+    sides: Sequence[Sequence[Piece]], leaning: Mapping[int, float | None]
+) -> list[outline.Measured]:
+    """Sum each side's widths, and their variances."""
+    totals = [sum(piece.width_m for piece in side) for side in sides]
+    mean_m = sum(totals) / sum(total > 0 for total in totals)
+    free = {side for side in range(len(sides)) if len(sides) != 4 or side in leaning}
+    free -= {side for side, lean in leaning.items() if lean is not None}
+    free_sd = outline.FREE_SD_RAD if len(sides) == 4 else outline.POLYGON_SD_RAD
+    return [
+        outline.Measured(
+            length_m=total or mean_m,
+            squeeze_sd=relative_sd(side) if side else outline.UNKNOWN_SD,
+            heading_rad=float(heading) + (leaning.get(index) or 0.0),
+            heading_sd_rad=free_sd if index in free else 0.0,
+        )
+        for index, (side, total, heading) in enumerate(
+            zip(sides, totals, outline.nominal_headings(len(sides)), strict=True)
+        )
+    ]
+
+
+def _ahead(heading: float) -> Vector:
+    return np.array([np.cos(heading), np.sin(heading)])
+
+
+def _walked(
+    sides: Sequence[Sequence[Piece]],
+    spans: Sequence[Sequence[tuple[float, float]]],
+    starts_m: Points,
+    headings: Float[np.ndarray, " n"],
+    *,
+    closed: bool,
+) -> list[Footprint]:
+    """Walk round the ring once and place each building where its first front starts.
+
+    A piece that continues a building from round the corner is left out: that building
+    was placed before, or will be when the walk comes to its first side.
+    """
+    placed: list[Footprint] = []
+    for here, side in enumerate(sides):
+        for index, piece in enumerate(side):
+            before = sides[here - 1] if closed or here else []
+            if index == 0 and before and before[-1].building_id == piece.building_id:
+                continue
+            run = _run(sides, here, index, closed=closed)
+            points = [starts_m[here] + spans[here][index][0] * _ahead(headings[here])]
+            points += [starts_m[side] for side, _ in run[1:]]
+            end, last = run[-1]
+            points.append(starts_m[end] + spans[end][last][1] * _ahead(headings[end]))
+            if len(run) == 1:
+                back = piece.depth_m * _party_walls(
+                    headings, here, spans[here], index, closed=closed
+                )
+                points += [points[1] + back[1], points[0] + back[0]]
+            elif len(run) == 2:
+                points.append(points[0] + points[2] - points[1])
+            elif len(run) == 3 and sides[end][last].front_id is None:
+                points[3] = _as_deep(points)
+            fronts = tuple(sides[s][i].front_id for s, i in run)
+            placed.append(_footprint(piece.building_id, points, fronts))
+    if not placed:  # one building is the whole block
+        fronts = tuple(side[0].front_id for side in sides)
+        points = [*starts_m, (starts_m[-1] + starts_m[0]) / 2]
+        placed.append(_footprint(sides[0][0].building_id, points, fronts))
+    return placed
+
+
+def _as_deep(points: Sequence[Vector]) -> Vector:
+    """Draw the unseen end of a building round two corners back to its other end.
+
+    So its inner wall runs along the street between, and clears its neighbours.
+    """
+    a, b, c, d = points
+    along = (c - b) / np.hypot(*(c - b))
+    inward = np.array([-along[1], along[0]])
+    deep, reach = float((a - b) @ inward), float((d - c) @ inward)
+    return c + min(1.0, deep / max(reach, 1e-9)) * (d - c)
+
+
+def _run(
+    sides: Sequence[Sequence[Piece]], here: int, index: int, *, closed: bool
+) -> list[tuple[int, int]]:
+    """Follow one building round corners; return its pieces as (side, index)."""
+    building = sides[here][index].building_id
+    run = [(here, index)]
+    while run[-1][1] == len(sides[run[-1][0]]) - 1:
+        there = run[-1][0] + 1
+        if there == len(sides) and not closed:
+            break
+        following = sides[there % len(sides)]
+        if not following or following[0].building_id != building:
+            break
+        run.append((there % len(sides), 0))
+    return run
+
+
+def _footprint(
+    building_id: str, points: Sequence[Vector], fronts: tuple[str | None, ...]
+) -> Footprint:
+    """Keep four corners and a front, or None, for each edge."""
+    four = (*fronts, None, None, None)[:4]
+    return Footprint(building_id, np.array(points[:4]), four, min(len(fronts) - 1, 3))
+
+
+def _party_walls(
+    headings: Float[np.ndarray, " n"],
+    here: int,
+    spans: Sequence[tuple[float, float]],
+    index: int,
+    *,
+    closed: bool,
+) -> Float[np.ndarray, "2 2"]:
+    """Find the ways back from the street at both ends of one piece.
+
+    Each is one metre deep, measured square to the street.
+    """
+    ahead = _ahead(headings[here])
+    inward = np.array([-ahead[1], ahead[0]])
+    count = len(headings)
+    at_start = at_end = inward
+    if closed or here > 0:
+        at_start = _one_deep(-_ahead(headings[here - 1]), inward)
+    if closed or here + 1 < count:
+        at_end = _one_deep(_ahead(headings[(here + 1) % count]), inward)
+    between = (spans[0][1], spans[-1][0]) if len(spans) > 2 else (0.0, spans[-1][1])
+    length_m = max(between[1] - between[0], 1e-9)
+    share = np.clip((np.array(spans[index]) - between[0]) / length_m, 0.0, 1.0)[:, None]
+    return at_start * (1 - share) + at_end * share
+
+
+def _one_deep(back: Vector, inward: Vector) -> Vector:
+    depth = float(back @ inward)
+    # a wall leaning by over 60 degrees would leave a sliver: it goes square instead
+    return back / depth if depth > 0.5 else inward
+
+
+def _apart(
+    footprints: Sequence[Footprint], outline_m: Points | None
+) -> list[Footprint]:
+    corners = apart(
+        [footprint.corners_m for footprint in footprints],
+        [footprint.turns for footprint in footprints],
+        outline_m=outline_m,
+    )
+    return [
+        replace(footprint, corners_m=four)
+        for footprint, four in zip(footprints, corners, strict=True)
+    ]

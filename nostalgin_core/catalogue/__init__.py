@@ -1,0 +1,19 @@
+"""An archive's list becomes lots, and lots become fronts in order round their block.
+
+In: rows of cells. Out: entries, then `Front`s with ring, side and rank.
+Paper: section 3.5 takes this order as given. Open `catalogue` first, then `rings`.
+"""
+
+from nostalgin_core.catalogue.catalogue import Catalogue, matched, read
+from nostalgin_core.catalogue.entry import Entry, from_file_name, inside
+from nostalgin_core.catalogue.rings import fronts
+
+__all__ = [
+    "Catalogue",
+    "Entry",
+    "from_file_name",
+    "fronts",
+    "inside",
+    "matched",
+    "read",
+]

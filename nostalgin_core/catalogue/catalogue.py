@@ -1,0 +1,185 @@
+"""Rows of an archive's list become entries: which photo shows which lot.
+
+Two kinds of list are read, by the names of their columns: the New York archive's own
+(1940 Block Number, 1940 Lot Number, LOT FRONTAGE ...) and a plain one (photo, block,
+lot, street, address, width_m, depth_m, side, order, credit). Columns that mean nothing
+here are kept and named in a warning. A row that makes no sense is a rejection that
+names it as a spreadsheet counts, header first. What a row's cells say is told in
+`entry`.
+"""
+
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import Any, Final
+
+from nostalgin_core.catalogue.entry import (
+    Entry,
+    from_cells,
+    from_file_name,
+    round_the_corner,
+)
+from nostalgin_core.records import Rejection
+
+ALIASES: Final[Mapping[str, tuple[str, ...]]] = {
+    "photo": (
+        "photo",
+        "path",
+        "file",
+        "file_name",
+        "filename",
+        "image",
+        "identifier",
+        "id",
+    ),
+    "block": ("block", "tax_block", "1940_block_number"),
+    "lot": ("lot", "tax_lot", "1940_lot_number"),
+    "bbl": ("bbl",),
+    "address": ("address", "house_no", "house_number", "1940_building_number"),
+    "street": ("street", "street_name", "streetname", "1940_street_name"),
+    "width_m": ("width_m",),
+    "depth_m": ("depth_m",),
+    "frontage_ft": ("lot_frontage", "frontage_ft"),
+    "depth_ft": ("lot_depth", "depth_ft"),
+    "side": ("side",),
+    "order": ("order", "rank"),
+    "ring": ("ring",),
+    "credit": ("credit", "rights_holder", "collection"),
+    "other_address": ("alternative_building_number",),
+    "other_street": ("alternative_street_name",),
+    "built": ("year_built",),
+    "taken": ("date", "taken"),
+}
+UNUSED: Final = frozenset(  # the archive's columns that say nothing about place or size
+    {
+        *("delete", "borough", "qc", "flagged", "notes", "landmark", "roll_number"),
+        *("alternative_block_number", "alternative_lot_number", "zip_code"),
+        *("complete_address", "condition_hole_punch_deteriorated_tape"),
+        *("year_altered1", "year_altered2", "rights", "source_url"),
+    }
+)
+FIRST_ROW: Final = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """What could be read, what could not, and what else was noticed."""
+
+    entries: tuple[Entry, ...]
+    rejections: tuple[Rejection, ...]
+    warnings: tuple[str, ...]
+
+
+def read(
+    rows: Iterable[Mapping[str, str | None]], *, name: str = "catalogue"
+) -> Catalogue:
+    """Read the rows of a catalogue, each by itself; empty ones are only counted.
+
+    What stands beyond the last column is found under None or no name, as `csv` has it.
+    """
+    given: list[dict[Any, Any]] = [dict(row) for row in rows]
+    listed = [{key: cell for key, cell in row.items() if key} for row in given]
+    columns = _columns(listed)
+    warnings = [
+        f"{name}: column {column!r} is not known; it is kept"
+        for column in dict.fromkeys(key for row in listed for key in row)
+        if column not in columns.values() and _plain(column) not in UNUSED
+    ]
+    entries, rejections = [], []
+    for number, (row, whole) in enumerate(zip(listed, given, strict=True), FIRST_ROW):
+        cells = {field: _text(row.get(column)) for field, column in columns.items()}
+        if not any(map(_text, row.values())) and not whole.get(None):
+            continue
+        try:
+            _check_width(whole)
+            entry, doubts = from_cells(cells, number)
+        except ValueError as problem:
+            reason, _, detail = str(problem).partition(": ")
+            rejections.append(
+                Rejection(f"{name} row {number}", "catalogue", reason, detail)
+            )
+            continue
+        entries += [entry, *round_the_corner(entry, cells)]
+        warnings += [f"{name} row {number}: {doubt}" for doubt in doubts]
+    return Catalogue(tuple(entries), tuple(rejections), tuple(warnings))
+
+
+def matched(
+    entries: Sequence[Entry], photos: Sequence[str]
+) -> tuple[dict[str, tuple[Entry, ...]], tuple[Rejection, ...]]:
+    """Find each photo's rows: those that name its path, or else just its name.
+
+    Neither case nor suffix matters. A row whose path leads to one photo is not taken
+    for a photo of the same name in another folder. A photo that no row names is matched
+    by the block and lot in its own name, if the catalogue has that lot; else it is
+    rejected.
+    """
+    by_path: dict[str, list[Entry]] = defaultdict(list)
+    by_name: dict[str, list[Entry]] = defaultdict(list)
+    by_lot: dict[tuple[str, str], list[Entry]] = defaultdict(list)
+    paths = {_path(photo) for photo in photos}
+    for entry in entries:
+        where = _path(entry.photo)
+        if where in paths:
+            by_path[where].append(entry)
+        if entry.photo and ("/" not in where or where not in paths):
+            by_name[PurePosixPath(where).name].append(entry)
+        by_lot[entry.block, entry.lot].append(entry)
+    found, rejections = {}, []
+    for photo in photos:
+        lot = from_file_name(photo)
+        where = _path(photo)
+        rows = by_path.get(where) or by_name.get(PurePosixPath(where).name)
+        rows = rows or (by_lot.get(lot) if lot else None)
+        if rows:
+            found[photo] = tuple(rows)
+        else:
+            detail = "add a row with its name, block and lot to the catalogue"
+            rejections.append(
+                Rejection(photo, "catalogue", "not in the catalogue", detail)
+            )
+    return found, tuple(rejections)
+
+
+def _columns(rows: Sequence[Mapping[str, str | None]]) -> dict[str, str]:
+    """Tell which column holds which field; of several names the first listed wins."""
+    names = {_plain(name): name for row in rows for name in row}
+    fields = {}
+    for field, aliases in ALIASES.items():
+        known = [names[alias] for alias in aliases if alias in names]
+        if known:
+            fields[field] = known[0]
+    return fields
+
+
+def _check_width(row: Mapping[Any, Any]) -> None:
+    """Refuse a row with more cells than columns: its cells may be of other columns.
+
+    Raises:
+        ValueError: "reason: remedy".
+    """
+    surplus = [_text(cell) for cell in row.get(None) or ()]
+    if any(surplus):
+        beyond = ", ".join(surplus)[:80]
+        raise ValueError(
+            f"too many cells: {beyond!r} stands beyond the last column; put texts that "
+            "hold commas in quotes"
+        )
+
+
+def _plain(column: object) -> str:
+    """Write a column's name in small letters, one underscore between its words."""
+    return re.sub(r"[^a-z0-9]+", "_", str(column).casefold()).strip("_")
+
+
+def _text(cell: object) -> str:
+    return str(cell if cell is not None else "").strip()
+
+
+def _path(photo: str) -> str:
+    """Write a photo's path as it is compared; some disks part letters and accents."""
+    path = PurePosixPath(unicodedata.normalize("NFC", photo).replace("\\", "/"))
+    return (path.parent / path.stem.strip()).as_posix().casefold()

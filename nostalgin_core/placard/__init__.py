@@ -1,0 +1,9 @@
+"""The number board in a tax photograph says which lot it records.
+
+In: a `Photo`, its board among the instances, a reader. Out: a `Placard`, or why not.
+Paper: section 3.1 takes block and lot as known. Open `placard` first.
+"""
+
+from nostalgin_core.placard.placard import board, read
+
+__all__ = ["board", "read"]

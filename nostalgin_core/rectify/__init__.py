@@ -1,0 +1,9 @@
+"""Each facade is seen straight on: lines, vanishing points, quad, focal length, aspect.
+
+In: a `Photo` and what was matted. Out: an `Elevation` or a `Rejection` a facade.
+Paper: section 3.3. Open `rectify` first, then `orient`.
+"""
+
+from nostalgin_core.rectify.rectify import rectify
+
+__all__ = ["rectify"]

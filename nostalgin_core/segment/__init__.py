@@ -1,0 +1,9 @@
+"""A network finds fronts and what hides them; holes and flares of the film are added.
+
+In: a `Photo` and a network. Out: its `Instance`s, one mask each, or a `Rejection`.
+Paper: section 3.2, Mask R-CNN. Open `segment` first.
+"""
+
+from nostalgin_core.segment.segment import CATEGORIES, Network, segment
+
+__all__ = ["CATEGORIES", "Network", "segment"]

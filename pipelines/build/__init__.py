@@ -1,0 +1,10 @@
+"""The Beam pipeline: every photo through its stages, every block to its model.
+
+In: a city folder with a manifest. Out: artifacts, a run's tables, a `Report`.
+A stage of the core is a transform here; whom to tell, it is given. Open `city` first.
+"""
+
+from pipelines.build.build import Lost, Report, build
+from pipelines.build.options import options
+
+__all__ = ["Lost", "Report", "build", "options"]

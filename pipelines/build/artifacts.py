@@ -1,0 +1,69 @@
+"""What the artifacts of `matte` and `rectify` hold: a row a facade or an occluder."""
+
+from typing import Any, Final
+
+import pyarrow as pa
+
+from nostalgin_core import steps
+from nostalgin_core.records import Elevation, Facade, Matted, Occluder, Rejection, Seen
+from pipelines.store import tables
+
+
+def joined(*records: type) -> pa.Schema:
+    """Give a schema with the columns of several records, each column once."""
+    columns = {field.name: field for one in records for field in tables.schema(one)}
+    return pa.schema(list(columns.values()))
+
+
+MATTED: Final = joined(Facade, Occluder)
+RECTIFIED: Final = joined(Elevation, Seen, Rejection)
+THUMBNAIL: Final = pa.schema([pa.field("picture", pa.binary())])
+NUMBERS: Final = [field.name for field in joined(Seen, Rejection)]
+
+
+def matted_table(result: Matted) -> pa.Table:
+    """Write facades and occluders into one table; occluders have a category."""
+    rows = [tables.to_row(one) for one in (*result.facades, *result.occluders)]
+    return pa.Table.from_pylist(rows, MATTED)
+
+
+def matted_from(table: pa.Table) -> Matted:
+    """Read back what `matted_table` wrote."""
+    rows = table.to_pylist()
+    return Matted(
+        tuple(tables.from_row(Facade, r) for r in rows if r["category"] is None),
+        tuple(tables.from_row(Occluder, r) for r in rows if r["category"] is not None),
+    )
+
+
+def rectified_table(
+    key: str, result: Matted, views: tuple[Elevation | Rejection, ...]
+) -> pa.Table:
+    """Write a row for each facade: its elevation and numbers, or its rejection."""
+    rows: list[dict[str, Any]] = []
+    for facade, view in zip(result.facades, views, strict=True):
+        row = tables.to_row(view)
+        if isinstance(view, Elevation):
+            row |= tables.to_row(steps.seen(key, facade, view))
+        rows.append(row)
+    return pa.Table.from_pylist(rows, RECTIFIED)
+
+
+def seen_from(table: pa.Table) -> list[Seen | Rejection]:
+    """Read the numbers of each facade, or its rejection."""
+    return [
+        tables.from_row(Seen if row["reason"] is None else Rejection, row)
+        for row in table.to_pylist()
+    ]
+
+
+def elevation_from(table: pa.Table, facade: int) -> Elevation:
+    """Read the elevation of one facade.
+
+    Raises:
+        ValueError: if the table has none.
+    """
+    for row in table.to_pylist():
+        if row["facade"] == facade and row["reason"] is None:
+            return tables.from_row(Elevation, row)
+    raise ValueError(f"no elevation of facade {facade} among {table.num_rows} rows")

@@ -1,0 +1,183 @@
+"""From facades to blocks: who shows which front, then one model a block."""
+
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import apache_beam as beam
+import pyarrow as pa
+from apache_beam import pvalue
+
+from nostalgin_core import block, model
+from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
+from nostalgin_core.block import Settled
+from pipelines.store import tables
+from pipelines.build.attempt import Attempt
+from pipelines.index.plan import BlockTask
+from pipelines.build.stages import Bench, FacadeRef, Work, named
+
+MODEL: Final = pa.schema(
+    [
+        pa.field("block", pa.string()),
+        pa.field("glb", pa.binary()),
+        pa.field("sha256", pa.string()),
+        pa.field("low_m", pa.list_(pa.float64())),
+        pa.field("high_m", pa.list_(pa.float64())),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A block whose facades are assigned and whose cuboids stand."""
+
+    task: BlockTask
+    facades: tuple[FacadeRef, ...]  # all that were seen, ordered
+    settled: Settled
+
+    @property
+    def key(self) -> str:
+        """Name the block in rejections."""
+        return self.task.block
+
+    @property
+    def block(self) -> Block:
+        """The cuboids."""
+        return self.settled.block
+
+    def worn(self) -> tuple[FacadeRef, ...]:
+        """List the facades that a wall wears: only these need inpainting."""
+        of = {texture_of(ref): ref for ref in reversed(self.facades)}
+        return tuple(of[texture] for texture in self.settled.worn())
+
+
+@dataclass(frozen=True)
+class Modelled:
+    """A block whose model is in the store."""
+
+    placed: Placed
+    path: str  # of the artifact
+    sha256: str  # of the GLB
+    low_m: tuple[float, float, float]  # east, north, up
+    high_m: tuple[float, float, float]
+
+    @property
+    def key(self) -> str:
+        """Name the block in rejections."""
+        return self.placed.key
+
+
+def texture_of(ref: FacadeRef) -> Texture:
+    """Name a facade as walls do."""
+    return ref.seen.photo, ref.seen.facade
+
+
+@dataclass
+class Assign(beam.PTransform):
+    """Blocks grouped with their facades in; blocks with cuboids out."""
+
+    def expand(self, grouped: pvalue.PCollection) -> Any:
+        """Wire the stage."""
+        return grouped | Attempt(placed, stage="assign")
+
+
+@dataclass
+class Model(beam.PTransform):
+    """Blocks grouped with their finished facades in; blocks with models out."""
+
+    bench: Bench
+
+    def expand(self, grouped: pvalue.PCollection) -> Any:
+        """Wire the stage."""
+        return grouped | Attempt(Work(modelled, self.bench), stage="block")
+
+
+def placed(grouped: tuple[str, dict[str, Iterable[Any]]]) -> list[Placed | Rejection]:
+    """Give facades to the fronts of a block, and raise its buildings."""
+    _, parts = grouped
+    (task,) = parts["task"]
+    facades = tuple(sorted(parts["facades"], key=order))
+    names = {ref.seen.photo: ref.photo.name for ref in reversed(facades)}
+    keys = {(ref.photo.root, ref.photo.name): ref.seen.photo for ref in facades}
+    candidates: dict[str, list[str]] = {}
+    for photo, front_id in task.photos:
+        if photo in keys:
+            candidates.setdefault(keys[photo], []).append(front_id)
+    seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
+    settled = block.settle(task.block, task.fronts, candidates, seen)
+    rejections = [named(one, names[one.key]) for one in settled.rejections]
+    return [Placed(task, facades, settled), *rejections]
+
+
+def order(ref: FacadeRef) -> tuple[str, str, int]:
+    """Put facades into an order that no worker can change."""
+    return ref.photo.name, ref.photo.root, ref.seen.facade
+
+
+def modelled(
+    grouped: tuple[str, dict[str, Iterable[Any]]], bench: Bench
+) -> Modelled | Rejection:
+    """Keep a block's GLB."""
+    _, parts = grouped
+    (one,) = parts["placed"]
+    one = only(one, {texture_of(ref) for ref in parts["finished"]})
+    key = bench.versions.key("block", *contents(one, bench))
+    path = bench.versions.path("block", key)
+    bench.keep(path, lambda: glb(one, bench))
+    row = bench.store.read_table(path, ["sha256", "low_m", "high_m"]).to_pylist()[0]
+    return Modelled(one, path, row["sha256"], tuple(row["low_m"]), tuple(row["high_m"]))
+
+
+def only(one: Placed, done: set[Texture]) -> Placed:
+    """Raise the buildings anew if a facade they wear could not be finished."""
+    if all(texture_of(ref) in done for ref in one.worn()):
+        return one
+    before = one.settled
+    kept = tuple(a for a in before.assignments if (a.photo, a.facade) in done)
+    seen = tuple(ref.seen for ref in one.facades)
+    anew = block.raised(one.key, before.fronts, kept, seen)
+    return replace(one, settled=replace(before, assignments=kept, block=anew))
+
+
+def contents(one: Placed, bench: Bench) -> list[str]:
+    """List what a block's model is made from: its buildings, names and elevations."""
+    buildings = [
+        [b.building_id, b.footprint_m.tolist(), b.height_m, b.assumed, walls(b)]
+        for b in one.block.buildings
+    ]
+    finished = [
+        bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
+        for ref in one.worn()
+    ]
+    return [
+        json.dumps([one.key, one.task.credit, buildings, model.table(one.settled)]),
+        *finished,
+    ]
+
+
+def walls(building: Building) -> list[dict[str, Any]]:
+    """Write a building's walls as plain values."""
+    return [tables.to_row(wall) for wall in building.walls]
+
+
+def glb(one: Placed, bench: Bench) -> pa.Table:
+    """Make a block's GLB from its cuboids and its finished elevations."""
+    views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
+    data, whole = model.model(one.settled, views, credit=one.task.credit)
+    row = {
+        "block": one.key,
+        "glb": data,
+        "sha256": hashlib.sha256(data).hexdigest(),
+        "low_m": whole.positions_m.min(axis=0).tolist(),
+        "high_m": whole.positions_m.max(axis=0).tolist(),
+    }
+    return pa.Table.from_pylist([row], MODEL)
+
+
+def finished(ref: FacadeRef, bench: Bench) -> Elevation:
+    """Read a facade's finished elevation."""
+    key = bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
+    rows = bench.store.read_table(bench.versions.path("inpaint", key))
+    return tables.records(Elevation, rows)[0]

@@ -1,0 +1,87 @@
+"""The pipeline of a city: from photos to facades, from facades to blocks.
+
+    photos --Read--Segment--Matte--Rectify--> facades (numbers)
+    facades + fronts --GroupByKey block--Assign--> cuboids, and which facades they wear
+    worn facades --Inpaint--> finished
+    finished + cuboids --GroupByKey block--Model--> GLB
+
+Only references pass between steps. A facade that no wall wears is never inpainted.
+"""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import apache_beam as beam
+from apache_beam import pvalue
+
+from pipelines.build.blocks import Assign, Model
+from pipelines.index.plan import Plan
+from pipelines.build.stages import (
+    Bench,
+    FacadeRef,
+    Inpaint,
+    Matte,
+    Read,
+    Rectify,
+    Segment,
+    Thumbnail,
+)
+
+
+class Built(NamedTuple):
+    """What a build knows at its end: references and reasons."""
+
+    photos: pvalue.PCollection  # read
+    facades: pvalue.PCollection  # rectified
+    placed: pvalue.PCollection  # blocks with cuboids
+    blocks: pvalue.PCollection  # blocks with models
+    rejections: pvalue.PCollection
+
+
+def city(pipeline: beam.Pipeline, plan: Plan, bench: Bench) -> Built:
+    """Wire the whole way from photos to blocks."""
+    read = (
+        pipeline
+        | "Photos" >> beam.Create(plan.photos, reshuffle=False)
+        | "Spread photos" >> beam.Reshuffle()
+        | Read()
+    )
+    small = read.made | Thumbnail(bench)
+    found = read.made | Segment(bench)
+    matted = found.made | Matte(bench)
+    facades = matted.made | Rectify(bench)
+    tasks = pipeline | "Blocks" >> beam.Create(
+        [(one.block, one) for one in plan.blocks]
+    )
+    by_block = facades.made | "By block" >> beam.FlatMap(keyed)
+    placed = (
+        {"task": tasks, "facades": by_block}
+        | "Group facades" >> beam.CoGroupByKey()
+        | Assign()
+    )
+    finished = (
+        placed.made
+        | "Worn" >> beam.FlatMap(lambda one: one.worn())
+        | "Spread facades" >> beam.Reshuffle()
+        | Inpaint(bench)
+    )
+    blocks = (
+        {
+            "placed": placed.made
+            | "Name blocks" >> beam.Map(lambda one: (one.key, one)),
+            "finished": finished.made | "By block again" >> beam.FlatMap(keyed),
+        }
+        | "Group finished" >> beam.CoGroupByKey()
+        | "With cuboids" >> beam.Filter(lambda group: group[1]["placed"])
+        | Model(bench)
+    )
+    stages = (read, small, found, matted, facades, placed, finished, blocks)
+    rejected = tuple(stage.rejected for stage in stages)
+    known = pipeline | "Known" >> beam.Create(plan.rejections)
+    rejections = (*rejected, known) | "Rejections" >> beam.Flatten()
+    return Built(read.made, facades.made, placed.made, blocks.made, rejections)
+
+
+def keyed(ref: FacadeRef) -> Iterable[tuple[str, Any]]:
+    """Send a facade to every block that its photo may show."""
+    return [(block, ref) for block in ref.photo.blocks]

@@ -1,0 +1,137 @@
+"""What a run has done becomes rows, and the rows of all workers become its tables."""
+
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import apache_beam as beam
+from apache_beam import pvalue
+
+from nostalgin_core import model
+from nostalgin_core.records import Rejection
+from pipelines import site
+from pipelines.build.blocks import Modelled, Placed, texture_of
+from pipelines.build.stages import FacadeRef
+from pipelines.index.plan import PhotoRef
+from pipelines.store import Store, Versions, runs, tables
+
+Rows = Iterable[dict[str, Any]]
+
+
+def photo_rows(ref: PhotoRef) -> Rows:
+    """Tell which file a photo was."""
+    row = vars(ref) | {"key": ref.sha256[:16], "blocks": list(ref.blocks)}
+    return [row]
+
+
+@dataclass(frozen=True)
+class FacadeRows:
+    """Tell what is known of a facade, and where its elevation lies."""
+
+    versions: Versions
+
+    def __call__(self, ref: FacadeRef) -> Rows:
+        """Write one row."""
+        key = self.versions.rectify_key(ref.photo.sha256)
+        where = self.versions.path("rectify", key)
+        return [{"name": ref.photo.name, "elevations": where} | tables.to_row(ref.seen)]
+
+
+@dataclass(frozen=True)
+class BuildingRows:
+    """Tell where buildings stand and what they wear."""
+
+    versions: Versions
+
+    def __call__(self, done: Modelled) -> Rows:
+        """Write a row a building."""
+        one = done.placed
+        refs = {texture_of(ref): ref for ref in one.facades}
+        scores = {(a.photo, a.facade): a.score for a in one.settled.assignments}
+        for building in one.block.buildings:
+            own = one.settled.fronts_of(building.building_id)
+            worn = [w.texture for w in building.walls if w.texture is not None]
+            worn = list(dict.fromkeys(worn))
+            yield {
+                "block": one.key,
+                "building_id": building.building_id,
+                "lot": own[0].lot if own else "",
+                "address": model.address(own),
+                "height_m": building.height_m,
+                "footprint_m": building.footprint_m.ravel().tolist(),
+                "assumed": building.assumed,
+                "fronts": [front.front_id for front in own],
+                "photos": [refs[texture].photo.name for texture in worn],
+                "roots": [refs[texture].photo.root for texture in worn],
+                "facades": [facade for _, facade in worn],
+                "scores": [scores[texture] for texture in worn],
+                "elevations": [self._path(refs[texture]) for texture in worn],
+            }
+
+    def _path(self, ref: FacadeRef) -> str:
+        key = self.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
+        return self.versions.path("inpaint", key)
+
+
+def block_rows(done: Modelled) -> Rows:
+    """Tell where a block's model lies and how far it reaches."""
+    built = done.placed.block
+    return [
+        {
+            "block": done.key,
+            "model": done.path,
+            "sha256": done.sha256,
+            "low_m": list(done.low_m),
+            "high_m": list(done.high_m),
+            "outlines_m": [outline.ravel().tolist() for outline in built.outline_m],
+            "buildings": len(built.buildings),
+            "assumed": sum(building.assumed for building in built.buildings),
+            "credit": done.placed.task.credit,
+            "record": record(done.placed),
+        }
+    ]
+
+
+def record(one: Placed) -> str:
+    """Write what the viewer tells of a block."""
+    told = {
+        ref.seen.photo: {"credit": one.task.credit, "caption": ref.photo.name}
+        for ref in one.facades
+    }
+    known = site.record(
+        one.block,
+        fronts=one.settled.fronts,
+        assignments=one.settled.assignments,
+        seen=[ref.seen for ref in one.facades],
+        photos=told,
+    )
+    return json.dumps(known, sort_keys=True)
+
+
+def rejection_rows(one: Rejection) -> Rows:
+    """Tell why something went no further."""
+    return [tables.to_row(one)]
+
+
+@dataclass
+class WriteTable(beam.PTransform):
+    """Elements in, one sorted table out, whatever order the workers took."""
+
+    store: Store
+    run: str
+    name: str
+    rows: Callable[[Any], Rows]
+
+    def expand(self, elements: pvalue.PCollection) -> Any:
+        """Wire rows to one file; it is written even if there are none."""
+        return (
+            elements
+            | "Rows" >> beam.FlatMap(self.rows)
+            | "Gather" >> beam.CombineGlobally(beam.combiners.ToListCombineFn())
+            | "Write" >> beam.Map(self._write)
+        )
+
+    def _write(self, rows: list[dict[str, Any]]) -> str:
+        runs.write_table(self.store, self.run, self.name, rows)
+        return self.name

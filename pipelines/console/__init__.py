@@ -1,0 +1,12 @@
+"""What talks to a person: lines, progress, errors and their remedies, examples.
+
+In: events, counts, exceptions. Out: a terminal's lines, or JSON for machines.
+It knows what there is to tell; none of those who tell know it. Open `voice` first.
+"""
+
+from pipelines.console.failure import errors, fail, unwritable
+from pipelines.console.hush import hushed
+from pipelines.console.progress import Watch
+from pipelines.console.voice import Voice, summed
+
+__all__ = ["Voice", "Watch", "errors", "fail", "hushed", "summed", "unwritable"]

@@ -1,0 +1,90 @@
+"""How far a build has come, told while it runs.
+
+A stage has done as many photos as it has artifacts, wherever its workers are: so the
+watcher counts these, and asks no runner.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Any, Final, Self
+
+from pipelines.console.voice import Voice
+
+PACE: Final = "rectify"  # by which stage photos a minute are counted
+EVERY_S: Final = 2.0  # a photo takes seconds
+SAY_EVERY_S: Final = 30.0  # without a terminal every line stays
+REST: Final = 20.0  # times as long as a look takes: a store may hold a million files
+
+
+@dataclass
+class Watch:
+    """Watches artifacts being made while a block of code runs, and tells of it."""
+
+    voice: Voice
+    count: Callable[[], dict[str, int]]  # the artifacts of each stage, in their order
+    photos: int
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _thread: threading.Thread | None = None
+    _look_s: float = 0.0
+
+    def __enter__(self) -> Self:
+        """Start to watch."""
+        self._thread = threading.Thread(target=self._loop, daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Stop."""
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _loop(self) -> None:
+        began, before = time.monotonic(), self._looked()
+        terminal = self.voice.console.is_terminal and not self.voice.machine
+        every = EVERY_S if terminal else SAY_EVERY_S
+        tell = self._status if terminal else self._lines
+        tell(lambda: self._facts(before, time.monotonic() - began), every)
+
+    def _status(self, facts: Callable[[], dict[str, Any]], every: float) -> None:
+        with self.voice.console.status("starting") as status:
+            while not self._stopped(every):
+                status.update(self._text(facts()))
+
+    def _lines(self, facts: Callable[[], dict[str, Any]], every: float) -> None:
+        while not self._stopped(every):
+            now = facts()
+            self.voice.say("progress", self._text(now), **now)
+
+    def _stopped(self, every: float) -> bool:
+        return self._stop.wait(max(every, REST * self._look_s))
+
+    def _looked(self) -> dict[str, int]:
+        began = time.monotonic()
+        now = self.count()
+        self._look_s = time.monotonic() - began
+        return now
+
+    def _facts(self, before: dict[str, int], seconds: float) -> dict[str, Any]:
+        now = self._looked()
+        new = {stage: now[stage] - before[stage] for stage in now}
+        rate = 60 * new[PACE] / max(seconds, 1e-9)
+        return {
+            "photos": self.photos,
+            "there": now,
+            "new": new,
+            "photos_per_minute": round(rate, 1),
+        }
+
+    def _text(self, facts: dict[str, Any]) -> str:
+        parts = [f"{stage} {done}" for stage, done in facts["there"].items()]
+        rate = facts["photos_per_minute"]
+        return f"{', '.join(parts)} of {self.photos} photos, {rate} photos a minute"

@@ -1,0 +1,54 @@
+"""How the command line speaks: lines for people, or JSON for machines."""
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from rich.console import Console
+
+from pipelines.console.failure import harmless
+
+if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
+    from pipelines.build import Report
+
+MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
+
+
+@dataclass
+class Voice:
+    """Tells people in lines, or machines in JSON, a line an event."""
+
+    console: Console
+    machine: bool = False
+
+    def say(self, event: str, text: str, **facts: Any) -> None:
+        """Tell one event."""
+        if self.machine:
+            print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
+        else:
+            self.console.print(harmless(text), markup=False, highlight=False)
+
+
+def summed(report: "Report", voice: Voice) -> None:
+    """Tell what came of a build."""
+    shown = report.rejections if voice.machine else report.grave()[:MOST_LINES]
+    for one in shown:
+        words = f"{one['key']}: {one['stage']}: {one['reason']}: {one['detail']}"
+        voice.say("rejected", f"rejected {words}", **one)
+    for reason, count in () if voice.machine else report.reasons():
+        voice.say("reason", f"{count} times rejected by {reason}")
+    voice.say(
+        "done",
+        f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
+        f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
+        f"{report.buildings} buildings, {report.assumed} of them assumed; all "
+        f"rejections are in runs/{report.run}/rejections.parquet",
+        run=report.run,
+        photos=report.photos,
+        rejected_photos=report.rejected_photos,
+        facades=report.facades,
+        blocks=report.blocks,
+        buildings=report.buildings,
+        assumed=report.assumed,
+        reasons=dict(report.reasons()),
+    )

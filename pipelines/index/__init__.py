@@ -1,0 +1,10 @@
+"""Photographs and a list become a manifest, and a manifest becomes a plan of work.
+
+In: files and CSV. Out: `manifest.csv` and `.parquet`; then photos and blocks to build.
+Open `index` first, then `manifest`.
+"""
+
+from pipelines.index.index import Nothing, index
+from pipelines.index.title import cleaned, of_folder
+
+__all__ = ["Nothing", "cleaned", "index", "of_folder"]

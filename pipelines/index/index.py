@@ -1,0 +1,228 @@
+"""From a folder of photos and a catalogue to the manifest of a city."""
+
+import hashlib
+import os
+import re
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from nostalgin_core import catalogue
+from nostalgin_core.catalogue import Catalogue, Entry, from_file_name
+from nostalgin_core.records import Front, Rejection
+from pipelines.index import comma, manifest
+from pipelines.index.title import cleaned
+from pipelines.store import Store, textual
+
+SUFFIXES: Final = (
+    ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
+)
+LONGEST: Final = 48  # letters of a folder that names a block
+# 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
+BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
+
+
+class Nothing(ValueError):  # noqa: N818 - it reads as what it is about
+    """A folder or a catalogue that holds nothing to index, with the remedy."""
+
+
+@dataclass(frozen=True)
+class Indexed:
+    """What a manifest was made of."""
+
+    photos: int
+    fronts: int
+    blocks: int
+    without_front: tuple[str, ...]
+    without_photo: int
+    rejections: tuple[Rejection, ...]
+    warnings: tuple[str, ...]
+
+
+def index(
+    photos: Path,
+    listed: Path | None,
+    city: str,
+    *,
+    blocks: Sequence[str] = (),
+    credit: str = "",
+    title: str = "",
+) -> Indexed:
+    """Write a city folder's manifest; without a `title` its folder's name is shown.
+
+    Without a catalogue the file names tell block and lot; where they don't, the photos
+    of a folder stand in one row, in the order of their names.
+
+    Raises:
+        Nothing: if there are no photos, or no row of the catalogue makes sense.
+    """
+    names, unnamed = spelt(images(photos))
+    read = from_names(names, photos) if listed is None else from_csv(listed)
+    wanted = [e for e in read.entries if not blocks or e.block in blocks]
+    if not wanted:
+        raise Nothing(
+            f"{listed or photos} lists none of the blocks {', '.join(blocks)}"
+        )
+    fronts, doubts = catalogue.fronts(wanted)
+    shown, strangers = catalogue.matched(read.entries, names)
+    rows, homeless = paired(names, shown, fronts, every=not blocks)
+    cells = [
+        manifest.row_of(
+            photo,
+            front,
+            root=os.path.abspath(photos),  # noqa: PTH100 - a link stays a link
+            credit=credit or first_credit(shown.get(photo, ())),
+        )
+        for photo, front in rows
+    ]
+    manifest.write(Store(city), cells, title=cleaned(title))
+    return Indexed(
+        photos=len({photo for photo, _ in rows if photo}),
+        fronts=len(fronts),
+        blocks=len({front.block for front in fronts}),
+        without_front=tuple(homeless),
+        without_photo=sum(not photo for photo, _ in rows),
+        rejections=(*unnamed, *read.rejections, *(strangers if not blocks else ())),
+        warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts),
+    )
+
+
+def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
+    """Leave out what is said about rows that were not asked for."""
+    named = [(re.search(r" row (\d+):", warning), warning) for warning in warnings]
+    return [text for row, text in named if row is None or int(row[1]) in rows]
+
+
+def first_credit(entries: Sequence[Entry]) -> str:
+    """Take the credit of the first row that gives one."""
+    return next((entry.credit for entry in entries if entry.credit), "")
+
+
+def images(folder: Path) -> list[str]:
+    """List the images below a folder, by their paths relative to it.
+
+    Raises:
+        Nothing: if there is no such folder, or no image in it.
+    """
+    if not folder.is_dir():
+        raise Nothing(f"{folder} is no folder: name the folder that holds the photos")
+    if not textual(os.path.abspath(folder)):  # noqa: PTH100 - a link stays a link
+        shown = os.fsencode(folder).decode(errors="backslashreplace")
+        raise Nothing(f"{shown}: a folder's name is not UTF-8; rename it")
+    found = sorted(
+        path.relative_to(folder).as_posix()
+        for path in folder.rglob("*")
+        if path.suffix.casefold() in SUFFIXES and path.is_file()
+    )
+    if not found:
+        raise Nothing(f"{folder} holds no image ({', '.join(SUFFIXES)})")
+    return found
+
+
+def spelt(names: Sequence[str]) -> tuple[list[str], list[Rejection]]:
+    """Part the files whose names are text from those whose bytes spell none.
+
+    Raises:
+        Nothing: if no name is text.
+    """
+    kept = [name for name in names if textual(name)]
+    odd = [os.fsencode(name).decode(errors="backslashreplace") for name in names]
+    rejections = [
+        Rejection(shown, "catalogue", "file name is not UTF-8", "rename the file")
+        for name, shown in zip(names, odd, strict=True)
+        if not textual(name)
+    ]
+    if not kept:
+        raise Nothing(f"{rejections[0].key}: {rejections[0].reason}; rename the files")
+    return kept, rejections
+
+
+def from_csv(path: Path) -> Catalogue:
+    """Read a catalogue.
+
+    Raises:
+        Nothing: if it can't be read, or no row of it makes sense.
+    """
+    try:
+        _, rows = comma.parsed(path.read_bytes())
+    except OSError as problem:
+        raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
+    except comma.NoTable as problem:
+        raise Nothing(f"{path} {problem}") from problem
+    read = catalogue.read(rows, name=path.name)
+    return useful(read, path)
+
+
+def useful(read: Catalogue, path: Path) -> Catalogue:
+    """Insist on one row that makes sense; else name the first that makes none.
+
+    Raises:
+        Nothing: if there is none.
+    """
+    if read.entries:
+        return read
+    told = [f"{one.key}: {one.reason}: {one.detail}" for one in read.rejections[:1]]
+    why = "".join(told) or "it is empty"
+    raise Nothing(f"{path} has no row that makes sense; {why}")
+
+
+def from_names(names: Sequence[str], folder: Path) -> Catalogue:
+    """Make a catalogue of what the file names tell.
+
+    Raises:
+        Nothing: if no name makes sense.
+    """
+    told = {name: block_and_lot(name) for name in names}
+    rows = []
+    for place, name in enumerate(names, 1):
+        row = (row_name(Path(name).parent.name or folder.name), str(place))
+        block, lot = told[name] or row
+        rows.append({"photo": name, "block": block, "lot": lot})
+    return useful(catalogue.read(rows, name="file names"), folder)
+
+
+def row_name(folder: str) -> str:
+    """Call a row of photos after its folder; a name that is no block's is replaced."""
+    if len(folder) <= LONGEST and not set(folder) & set("/\\\0") and folder.strip():
+        return folder
+    return f"row {hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]}"
+
+
+def block_and_lot(name: str) -> tuple[str, str] | None:
+    """Read block and lot from a file name, if it tells both."""
+    exact = from_file_name(name)
+    if exact is not None:
+        return exact
+    found = BLOCK_AND_LOT.search(Path(name).stem.strip().casefold())
+    return (str(int(found[1])), str(int(found[2]))) if found else None
+
+
+def paired(
+    names: Sequence[str],
+    shown: dict[str, tuple[Entry, ...]],
+    fronts: Sequence[Front],
+    *,
+    every: bool,
+) -> tuple[list[tuple[str, Front | None]], list[str]]:
+    """Pair each photo with all fronts of its lot; tell which photos have none.
+
+    Fronts without a photo get a row too, and so, if `every` photo is wanted, do photos
+    without a front.
+    """
+    of_lot: dict[tuple[str, str], list[Front]] = defaultdict(list)
+    for front in fronts:
+        of_lot[front.block, front.lot].append(front)
+    rows: list[tuple[str, Front | None]] = []
+    homeless = []
+    for name in names:
+        lots = dict.fromkeys((entry.block, entry.lot) for entry in shown.get(name, ()))
+        own = [front for lot in lots for front in of_lot.get(lot, ())]
+        rows += [(name, front) for front in own]
+        if not own and every:
+            rows.append((name, None))
+            homeless.append(name)
+    seen = {front.front_id for _, front in rows if front is not None}
+    rows += [("", front) for front in fronts if front.front_id not in seen]
+    return rows, homeless

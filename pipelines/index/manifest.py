@@ -1,0 +1,255 @@
+"""The manifest: which photo shows which fronts, a row for each pair of the two.
+
+`index` writes it twice, as `manifest.parquet` for programs and `manifest.csv` for
+people. The Parquet file remembers the hash of the CSV it was written with, so a CSV
+that was mended by hand is noticed, and wins; it keeps the city's title, too. Columns
+are documented in `docs/manifest.md`; columns that are not known are kept.
+"""
+
+import dataclasses
+import hashlib
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from nostalgin_core.catalogue import inside
+from nostalgin_core.records import Front, Rejection
+from pipelines.index import comma
+from pipelines.index.cells import front_from, text
+from pipelines.store import Store, parquet_bytes, tables
+
+PARQUET: Final = "manifest.parquet"
+CSV: Final = "manifest.csv"
+CSV_HASH: Final = b"nostalgin.csv_sha256"
+TITLE: Final = b"nostalgin.title"
+PHOTO: Final = pa.schema(
+    [
+        pa.field("root", pa.string()),  # folder that `photo` is relative to
+        pa.field("photo", pa.string()),  # empty: a front without a photo
+        pa.field("credit", pa.string()),
+    ]
+)
+FRONT: Final = tables.schema(Front)
+SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
+REQUIRED: Final = ("photo", "front_id", "block", "lot")
+DIGITS: Final = 9
+FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
+
+
+class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
+    """A manifest that can't be read at all, with what to do about it."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One photo that may show one front; either may be missing, not both."""
+
+    number: int  # as a spreadsheet counts
+    root: str
+    photo: str
+    front: Front | None
+    credit: str
+    cells: dict[str, Any] = field(compare=False)  # all that was written in the row
+
+    @property
+    def key(self) -> str:
+        """Name the row in rejections."""
+        return f"{CSV} row {self.number}"
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """The rows that can be used, those that can't, and what else was noticed."""
+
+    rows: tuple[Row, ...]
+    rejections: tuple[Rejection, ...]
+    warnings: tuple[str, ...]
+    sha256: str  # of what was read
+    mended: bool = False  # the CSV was edited since it was written
+    title: str = ""  # of the city; empty: its folder's name will do
+
+
+def row_of(
+    photo: str, front: Front | None, *, root: str, credit: str
+) -> dict[str, Any]:
+    """Write a row's cells."""
+    cells = dict.fromkeys(FRONT.names) if front is None else tables.to_row(front)
+    return {"root": root, "photo": photo, "credit": credit} | cells
+
+
+def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
+    """Write the manifest in both forms, in the order of block, ring, rank and photo."""
+    known = SCHEMA.names
+    others = sorted({name for row in rows for name in row} - set(known))
+    ordered = sorted(rows, key=place)
+    text = comma.written([*known, *others], ordered).encode()
+    extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
+    table = pa.Table.from_pylist(ordered, extended)
+    mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
+    if title:
+        mark[TITLE] = title.encode()
+    store.write_bytes(CSV, text)
+    store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
+
+
+def rewrite(store: Store, found: Manifest) -> Manifest:
+    """Write a manifest that was mended by hand anew, in both forms, and read it.
+
+    Rows are put in order again, so that those written are numbered otherwise than
+    those read. While a row is rejected the manifest is left as it is: that row is still
+    to be mended.
+    """
+    if not found.mended or found.rejections:
+        return found
+    write(store, [typed(row) for row in found.rows], title=found.title)
+    return read(store)
+
+
+def typed(row: Row) -> dict[str, Any]:
+    """Write a row's cells as the schema's types, unknown columns as they are."""
+    known = row_of(row.photo, row.front, root=row.root, credit=row.credit)
+    if row.front is None:  # what is known of a front that has no name yet is kept
+        words = [one.name for one in FRONT if one.type == pa.string()]
+        known |= {name: text(row.cells, name) for name in words}
+    return row.cells | known
+
+
+def place(row: dict[str, Any]) -> tuple[Any, ...]:
+    """Order rows as one would walk: by block, ring, round the ring, then by photo."""
+    return (
+        row["block"] is None,
+        natural(row["block"]),
+        row["ring"] or 0,
+        row["rank"] or 0,
+        row["front_id"] or "",
+        row["photo"] or "",
+    )
+
+
+def natural(text: str | None) -> tuple[int, str]:
+    """Order numbers of up to nine digits by value, and all else after them."""
+    if text and text.isdecimal() and len(text) <= DIGITS:
+        return int(text), ""
+    return 10**DIGITS, text or ""
+
+
+def read(store: Store) -> Manifest:
+    """Read the manifest: the CSV if it was mended by hand, else the Parquet file.
+
+    Raises:
+        Unusable: if there is none, or if what there is makes no sense.
+    """
+    mended, parquet = optional(store, CSV), optional(store, PARQUET)
+    title = ""
+    if parquet is not None:
+        table = parsed(parquet, store.root)
+        told = table.schema.metadata or {}
+        title = told.get(TITLE, b"").decode(errors="replace")
+        mark = told.get(CSV_HASH, b"").decode(errors="replace")
+        if mended is None or hashlib.sha256(mended).hexdigest() == mark:
+            rows = table.to_pylist()
+            found = checked(rows, table.column_names, parquet, PARQUET)
+            return replace(found, title=title)
+    if mended is None:
+        raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
+    names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
+    found = checked(rows, names, mended, CSV)
+    return replace(found, mended=parquet is not None, title=title)
+
+
+def optional(store: Store, name: str) -> bytes | None:
+    """Read a file if it is there."""
+    return store.read_bytes(name) if store.exists(name) else None
+
+
+def parsed(data: bytes, where: str) -> pa.Table:
+    """Parse the Parquet form."""
+    try:
+        return pq.read_table(io.BytesIO(data))
+    except (pa.ArrowInvalid, OSError) as problem:
+        raise Unusable(
+            f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
+            f"{CSV} will be read, or run `nostalgin index` again"
+        ) from problem
+
+
+def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
+    """Parse the form that people mend."""
+    try:
+        return comma.parsed(data)
+    except comma.NoTable as problem:
+        raise Unusable(f"{where} {problem}") from problem
+
+
+def checked(
+    cells: list[comma.Cells], names: list[str], data: bytes, name: str
+) -> Manifest:
+    """Check every row by itself, so that one bad row spoils no other.
+
+    Rows in which nothing is written are counted, and else ignored.
+    """
+    missing = [one for one in REQUIRED if one not in names]
+    if missing:
+        raise Unusable(
+            f"{name} lacks the columns {', '.join(missing)}: it has "
+            f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
+        )
+    unknown = [one for one in names if one not in SCHEMA.names]
+    warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
+    results = [
+        usable(number, row)
+        for number, row in enumerate(cells, FIRST_ROW)
+        if not comma.blank(row)
+    ]
+    rows = tuple(one for one in results if isinstance(one, Row))
+    return Manifest(
+        rows,
+        tuple(one for one in results if isinstance(one, Rejection)),
+        (*warnings, *contradictions(rows)),
+        hashlib.sha256(data).hexdigest(),
+    )
+
+
+def contradictions(rows: Sequence[Row]) -> list[str]:
+    """Name the rows that tell a front otherwise than an earlier row, which counts."""
+    first: dict[tuple[str, str], Row] = {}
+    told = []
+    for row in rows:
+        if row.front is None:
+            continue
+        known = first.setdefault((row.front.block, row.front.front_id), row)
+        if known.front is not None and known.front != row.front:
+            differing = [
+                one.name
+                for one in dataclasses.fields(Front)
+                if getattr(known.front, one.name) != getattr(row.front, one.name)
+            ]
+            told.append(
+                f"{row.key}: {', '.join(differing)} of front {row.front.front_id} not "
+                f"as in row {known.number}, which counts; mend all the front's rows"
+            )
+    return told
+
+
+def usable(number: int, cells: comma.Cells) -> Row | Rejection:
+    """Check one row, and name the row and the remedy if it can't be used."""
+    name = f"{CSV} row {number}"
+    if None in cells:
+        return Rejection(
+            name, "manifest", "too many cells", f"{cells[None]}: quote commas"
+        )
+    photo = text(cells, "photo")
+    if not inside(photo):
+        detail = f"{photo!r} leads out of the photo folder: write a path inside it"
+        return Rejection(name, "manifest", "path outside the photo folder", detail)
+    try:
+        front = front_from(cells)
+    except ValueError as problem:
+        return Rejection(name, "manifest", "nonsense cell", f"{problem}: mend the cell")
+    if front is None and not photo:
+        return Rejection(name, "manifest", "empty row", "name a photo or a front")
+    return Row(number, text(cells, "root"), photo, front, text(cells, "credit"), cells)

@@ -1,0 +1,115 @@
+"""What a manifest asks for: photos to work on, and blocks to build from them."""
+
+import hashlib
+import os
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from nostalgin_core.records import Front, Rejection
+from pipelines.index.manifest import Row
+
+Name = tuple[str, str]  # a photo's root and its path below
+
+
+@dataclass(frozen=True)
+class PhotoRef:
+    """A photo in the archive, by name; by content once it was read."""
+
+    root: str  # the folder that names are relative to
+    name: str
+    blocks: tuple[str, ...]  # that it may show fronts of
+    sha256: str = ""
+
+    @property
+    def key(self) -> str:
+        """Name the photo in rejections."""
+        return self.name
+
+
+@dataclass(frozen=True)
+class BlockTask:
+    """One block: its fronts, and which photos may show them."""
+
+    block: str
+    fronts: tuple[Front, ...]  # in the order of ring and rank
+    photos: tuple[tuple[Name, str], ...]  # and a front that each may show
+    credit: str
+
+    @property
+    def key(self) -> str:
+        """Name the block in rejections."""
+        return self.block
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All there is to do, in order, and what can't be done."""
+
+    photos: tuple[PhotoRef, ...]
+    blocks: tuple[BlockTask, ...]
+    rejections: tuple[Rejection, ...]
+
+
+def plan(rows: Sequence[Row], *, city: str, shard: tuple[int, int] = (1, 1)) -> Plan:
+    """Sort the manifest's rows into photos and blocks, and take one part of the blocks.
+
+    A photo without a front is rejected: there is no place for it.
+    """
+    blocks = defaultdict(list)
+    photos: dict[Name, list[str]] = defaultdict(list)
+    for row in rows:
+        if row.front is None or not falls_to(row.front.block, shard):
+            continue
+        blocks[row.front.block].append(row)
+        if row.photo:
+            photos[rooted(row.root, city), row.photo].append(row.front.block)
+    return Plan(
+        tuple(
+            PhotoRef(root, name, tuple(sorted(set(theirs))))
+            for (root, name), theirs in sorted(photos.items())
+        ),
+        tuple(
+            block_task(block, theirs, city=city)
+            for block, theirs in sorted(blocks.items())
+        ),
+        tuple(homeless(row) for row in rows if row.front is None),
+    )
+
+
+def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:
+    """Gather one block's fronts; a front in several rows counts once, as first told."""
+    fronts: dict[str, Front] = {}
+    for row in rows:
+        if row.front is not None:
+            fronts.setdefault(row.front.front_id, row.front)
+    ordered = sorted(
+        fronts.values(), key=lambda one: (one.ring, one.rank, one.front_id)
+    )
+    pairs = {
+        ((rooted(row.root, city), row.photo), row.front.front_id)
+        for row in rows
+        if row.photo and row.front
+    }
+    named = sorted({row.credit for row in rows if row.credit})
+    return BlockTask(block, tuple(ordered), tuple(sorted(pairs)), "; ".join(named))
+
+
+def homeless(row: Row) -> Rejection:
+    """Tell that a photo can't be placed, and how to give it a place."""
+    detail = f"{row.key}: fill in front_id, block and lot of {row.photo}"
+    return Rejection(row.photo, "manifest", "no front known", detail)
+
+
+def rooted(root: str, city: str) -> str:
+    """Resolve a photo folder that is written relative to the city folder."""
+    if "://" in root or os.path.isabs(root):  # noqa: PTH117 - may be no local path
+        return root
+    return os.path.normpath(os.path.join(city, root))  # noqa: PTH118
+
+
+def falls_to(block: str, shard: tuple[int, int]) -> bool:
+    """Tell whether a block is in the k-th of n parts, the same on every machine."""
+    k, n = shard
+    digest = hashlib.sha256(block.encode()).digest()
+    return int.from_bytes(digest[:8], "big") % n == k - 1

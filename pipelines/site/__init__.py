@@ -1,0 +1,11 @@
+"""A run becomes a static folder that any web server turns into a walkable city.
+
+In: a run's tables and models. Out: `CITY/site`, and the pointer to the run.
+Open `publish` first.
+"""
+
+from pipelines.site.publish import publish
+from pipelines.site.record import record
+from pipelines.site.site import ViewerMissingError, thumbnail
+
+__all__ = ["ViewerMissingError", "publish", "record", "thumbnail"]

@@ -1,0 +1,136 @@
+"""What the viewer tells of a block: its outlines and its buildings, as plain values."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from nostalgin_core.model import address
+from nostalgin_core.records import (
+    Assignment,
+    Block,
+    Building,
+    Front,
+    Rejection,
+    Seen,
+    Texture,
+    Wall,
+)
+
+Json = dict[str, Any]
+CENTIMETRE: Final = 2  # digits
+
+
+def record(
+    block: Block,
+    *,
+    fronts: Iterable[Front],
+    assignments: Iterable[Assignment],
+    seen: Iterable[Seen],
+    photos: Mapping[str, Mapping[str, Any]],
+    rejections: Mapping[str, Sequence[Rejection]] | None = None,
+    more: Mapping[str, Mapping[str, Any]] | None = None,
+) -> Json:
+    """Write what is known of a block.
+
+    `photos` maps the key of each photo to what is told of it (`credit`, `caption`);
+    `rejections` and `more` (a year, say) map building ids. Lengths are metres, rounded
+    to centimetres; `photographed_share` is the share of a building's fronts, by width,
+    that a camera saw; `height_sd_m` follows from the spread of the aspect it wears.
+    """
+    by_id = {front.front_id: front for front in fronts}
+    facades = {(one.photo, one.facade): one for one in seen}
+    showing: dict[str, list[str]] = {}
+    for one in sorted(assignments, key=lambda one: (-one.score, one.photo)):
+        showing.setdefault(one.front_id, []).append(one.photo)
+    return {
+        "block": block.block,
+        "outline_m": [_rounded(outline) for outline in block.outline_m],
+        "buildings": [
+            {
+                **_building(one, by_id, facades, showing, photos),
+                "rejections": [
+                    _rejection(why)
+                    for why in (rejections or {}).get(one.building_id, ())
+                ],
+                **(more or {}).get(one.building_id, {}),
+            }
+            for one in block.buildings
+        ],
+    }
+
+
+def _building(
+    building: Building,
+    fronts: Mapping[str, Front],
+    facades: Mapping[Texture, Seen],
+    showing: Mapping[str, Sequence[str]],
+    photos: Mapping[str, Mapping[str, Any]],
+) -> Json:
+    names = [wall.front_id for wall in building.walls if wall.front_id is not None]
+    own = [fronts[name] for name in names if name in fronts]
+    own.sort(key=lambda front: (front.ring, front.rank))
+    worn = [wall.texture[0] for wall in building.walls if wall.texture]
+    shown = [key for front in own for key in showing.get(front.front_id, ())]
+    keys = list(dict.fromkeys([*worn, *shown]))
+    return {
+        "id": building.building_id,
+        "lot": own[0].lot if own else building.building_id,
+        "address": address(own),
+        "street": ", ".join(
+            dict.fromkeys(front.street for front in own if front.street)
+        ),
+        "fronts": [front.front_id for front in own],
+        "photos": [
+            {"key": key, "used": key in worn, **photos.get(key, {})} for key in keys
+        ],
+        "width_m": round(
+            own[0].width_m if own else _width(building.walls[0]), CENTIMETRE
+        ),
+        "width_assumed": bool(own and own[0].width_assumed),
+        "height_m": round(building.height_m, CENTIMETRE),
+        "height_sd_m": _height_sd(building, facades),
+        "assumed": building.assumed,
+        "photographed_share": round(_share(building, facades), 3),
+    }
+
+
+def _fronts(building: Building) -> list[Wall]:
+    return [wall for wall in building.walls if wall.front_id is not None]
+
+
+def _width(wall: Wall) -> float:
+    return float(np.hypot(*np.subtract(wall.end_m, wall.start_m)))
+
+
+def _height_sd(building: Building, facades: Mapping[Texture, Seen]) -> float | None:
+    """Carry the aspect's relative spread over to the height; the surest one counts."""
+    textures = [wall.texture for wall in building.walls if wall.texture is not None]
+    worn = [facades[texture] for texture in textures if texture in facades]
+    if building.assumed or not worn:
+        return None
+    relative = min(one.aspect_sd / one.aspect for one in worn)
+    return round(building.height_m * relative, CENTIMETRE)
+
+
+def _share(building: Building, facades: Mapping[Texture, Seen]) -> float:
+    walls = _fronts(building)
+    widths = [_width(wall) for wall in walls]
+    shares = [_photographed(wall, facades) for wall in walls]
+    whole = sum(widths)
+    return float(np.dot(widths, shares) / whole) if whole > 0 else 0.0
+
+
+def _photographed(wall: Wall, facades: Mapping[Texture, Seen]) -> float:
+    if wall.texture is None or wall.evidence is not None:
+        return 0.0
+    known = facades.get(wall.texture)
+    return known.photographed if known else 0.0
+
+
+def _rounded(outline: np.ndarray) -> list[list[float]]:
+    return [[float(value) + 0.0 for value in row] for row in np.round(outline, 3)]
+
+
+def _rejection(why: Rejection) -> Json:
+    return {"stage": why.stage, "reason": why.reason, "detail": why.detail}

@@ -1,0 +1,207 @@
+"""The site: a static folder that any web server turns into a walkable city.
+
+    index.html, assets/            the viewer, built from `viewer/`
+    blocks/<block>-<sha8>.glb      models, named by content
+    photos/<key>.webp              thumbnails of the photographs
+    site.json                      what is known of blocks and buildings
+    tileset.json                   3D Tiles; swapped in last
+
+Files that others name come first and the tileset last, each written beside its place
+and moved into it, so that a reader never meets half a city. What an earlier city left
+behind is removed at the end.
+"""
+
+import errno
+import hashlib
+import io
+import json
+import os
+import re
+import shutil
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from PIL import Image
+
+from nostalgin_core import city
+from nostalgin_core.arrays import Gray
+from nostalgin_core.model import legend
+
+VIEWER: Final = Path(__file__).with_name("viewer_dist")
+THUMBNAIL_PX: Final = 1000  # a panel is 370 px wide, on screens of up to 2.7 px a point
+SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
+
+Json = dict[str, Any]
+
+
+class ViewerMissingError(FileNotFoundError):
+    """The viewer was not built, with the command that builds it."""
+
+    def __init__(self) -> None:
+        """Name the remedy."""
+        super().__init__(f"no viewer at {VIEWER}; build it with `make viewer`")
+
+
+@dataclass(frozen=True)
+class BlockModel:
+    """One block's model, what is known of it, and where it lies.
+
+    `record` is what `site_record.record` writes: `block`, `outline_m` and `buildings`,
+    whose `photos` name keys of the photographs. It may carry more, which is kept.
+    """
+
+    name: str
+    glb: bytes | Callable[[], bytes]  # or how to read them, one block at a time
+    record: Mapping[str, Any]
+    low_m: tuple[float, float, float]  # the model's bounds: east, north, up
+    high_m: tuple[float, float, float]
+    origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
+    place: city.Place | None = None  # in place of origin_m, where it is known
+    turn_rad: float = 0.0  # of its frame in the city's, anticlockwise
+
+
+def assemble(
+    destination: Path,
+    *,
+    blocks: Sequence[BlockModel],
+    photos: Mapping[str, bytes],
+    title: str,
+    place: city.Place | None = None,
+    viewer: Path = VIEWER,
+) -> None:
+    """Write the site of a city; nothing outside `destination` is touched.
+
+    `photos` are encoded thumbnails (WebP, JPEG or PNG) by key. A building's photo whose
+    key is not among them gets no `file`, and the viewer says so. Names of blocks and
+    photos may be anything: file names are made from their harmless letters, and from
+    their hash where two would clash.
+
+    Raises:
+        ViewerMissingError: if the viewer was not built.
+        ValueError: if there is no block, or two have the same name.
+    """
+    names = [block.name for block in blocks]
+    if len(set(names)) != len(names):
+        raise ValueError(f"blocks must have names of their own: {sorted(names)}")
+    index = viewer / "index.html"
+    if not index.is_file():
+        raise ViewerMissingError
+    models = {f"blocks/{safe(one.name)}-{digest(one)}.glb": one for one in blocks}
+    files = {key: f"photos/{safe(key)}{suffix(data)}" for key, data in photos.items()}
+    tiles = [
+        city.Tile(uri, one.low_m, one.high_m, one.origin_m, one.place, one.turn_rad)
+        for uri, one in models.items()
+    ]
+    record = {
+        "title": title,
+        "legend": legend(),
+        "blocks": [_block(uri, one, files) for uri, one in models.items()],
+    }
+    site = Folder(destination)
+    for path in sorted((viewer / "assets").iterdir()):
+        site.write(f"assets/{path.name}", path.read_bytes())
+    for key, data in photos.items():
+        site.write(files[key], data)
+    for uri, one in models.items():
+        site.write(uri, content(one))
+    site.write("index.html", index.read_bytes())
+    site.write("site.json", _text(record))
+    site.write("tileset.json", _text(city.tileset(tiles, place=place)))
+    site.prune(("assets", "blocks", "photos"))
+
+
+def thumbnail(image: Gray, *, longest_px: int = THUMBNAIL_PX) -> bytes:
+    """Encode a photograph as a small WebP, never larger than it was."""
+    picture = Image.fromarray(image)
+    picture.thumbnail((longest_px, longest_px), Image.Resampling.LANCZOS)
+    file = io.BytesIO()
+    picture.save(file, "WEBP", quality=80, method=4)
+    return file.getvalue()
+
+
+def digest(block: BlockModel) -> str:
+    """Give a model's file name what changes with its content."""
+    return hashlib.sha256(content(block)).hexdigest()[:8]
+
+
+def content(block: BlockModel) -> bytes:
+    """Give a block's model, which may have to be read first."""
+    return block.glb() if callable(block.glb) else block.glb
+
+
+def safe(name: str) -> str:
+    """Turn any name into a file name; different names give different ones.
+
+    A harmless name stays as it is; another keeps its harmless letters and gets its
+    hash.
+    """
+    if re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", name):
+        return name
+    letters = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:40]
+    # a dot is in no harmless name, so that no other name can pose as this one
+    return f"{letters}.{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+
+
+def suffix(data: bytes) -> str:
+    """Tell a picture's file suffix by its first bytes."""
+    if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
+        return ".webp"
+    return next((end for start, end in SUFFIXES if data.startswith(start)), ".bin")
+
+
+def _block(uri: str, block: BlockModel, files: Mapping[str, str]) -> Json:
+    buildings = [
+        {**building, "photos": [_photo(one, files) for one in building["photos"]]}
+        for building in block.record["buildings"]
+    ]
+    return {**block.record, "name": block.name, "uri": uri, "buildings": buildings}
+
+
+def _photo(photo: Mapping[str, Any], files: Mapping[str, str]) -> Json:
+    return {**photo, "file": files.get(photo["key"])}
+
+
+def _text(value: Json) -> bytes:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
+
+
+class Folder:
+    """A folder that is written file by file, each whole or not at all."""
+
+    def __init__(self, root: Path) -> None:
+        """Make the folder where it is missing."""
+        root.mkdir(parents=True, exist_ok=True)
+        self.root = root.resolve()
+        self.written: set[str] = set()
+
+    def write(self, name: str, data: bytes) -> None:
+        """Put a file in its place in one move; one that is already the same stays.
+
+        Raises:
+            OSError: if it can't be written there, or a link leads out of the folder.
+        """
+        path = self.root / name
+        path.parent.mkdir(exist_ok=True)
+        if not path.parent.resolve().is_relative_to(self.root):
+            raise OSError(
+                errno.ELOOP, f"{name} leads out of the site: remove that link"
+            )
+        self.written.add(name)
+        if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
+            return
+        beside = path.with_name(f".{path.name}.{os.getpid()}")
+        beside.write_bytes(data)
+        beside.replace(path)
+
+    def prune(self, folders: Iterable[str]) -> None:
+        """Remove what an earlier city left in these folders."""
+        for folder in folders:
+            for path in sorted((self.root / folder).glob("*")):
+                if f"{folder}/{path.name}" in self.written:
+                    continue
+                if path.is_dir() and not path.is_symlink():
+                    shutil.rmtree(path)
+                else:
+                    path.unlink()

@@ -1,0 +1,97 @@
+"""What one run knows, as tables: references and reasons, never pixels.
+
+    CITY/runs/<run id>/{photos,facades,buildings,blocks,rejections}.parquet, run.json
+
+The run's id is a hash of what was asked for, so a run that is repeated writes the same
+tables to the same place. Clock times are in run.json alone.
+"""
+
+import json
+from collections.abc import Iterable
+from typing import Any, Final
+
+import pyarrow as pa
+
+from nostalgin_core.records import Rejection, Seen
+from pipelines.store import tables
+from pipelines.store.store import Store, key_of
+from pipelines.store.versions import Versions
+
+
+def columns(**kinds: pa.DataType) -> pa.Schema:
+    """Give a schema by names and types."""
+    return pa.schema([pa.field(name, kind) for name, kind in kinds.items()])
+
+
+TEXT, NUMBER, COUNT = pa.string(), pa.float64(), pa.int64()
+NUMBERS: Final = pa.list_(pa.float64())
+
+PHOTOS: Final = columns(
+    name=TEXT, root=TEXT, key=TEXT, sha256=TEXT, blocks=pa.list_(TEXT)
+)
+FACADES: Final = pa.schema([*columns(name=TEXT, elevations=TEXT), *tables.schema(Seen)])
+BUILDINGS: Final = columns(
+    block=TEXT,
+    building_id=TEXT,
+    lot=TEXT,
+    address=TEXT,
+    height_m=NUMBER,
+    footprint_m=NUMBERS,
+    assumed=pa.bool_(),
+    fronts=pa.list_(TEXT),
+    photos=pa.list_(TEXT),  # worn, in the order of the walls
+    roots=pa.list_(TEXT),
+    facades=pa.list_(COUNT),
+    scores=NUMBERS,
+    elevations=pa.list_(TEXT),  # artifacts of the finished elevations
+)
+BLOCKS: Final = columns(
+    block=TEXT,
+    model=TEXT,  # the artifact that holds the GLB
+    sha256=TEXT,
+    low_m=NUMBERS,
+    high_m=NUMBERS,
+    outlines_m=pa.list_(NUMBERS),
+    buildings=COUNT,
+    assumed=COUNT,
+    credit=TEXT,
+    record=TEXT,  # what the viewer tells of it, as JSON
+)
+REJECTIONS: Final = tables.schema(Rejection)
+SCHEMAS: Final = {
+    "photos": PHOTOS,
+    "facades": FACADES,
+    "buildings": BUILDINGS,
+    "blocks": BLOCKS,
+    "rejections": REJECTIONS,
+}
+
+
+def run_id(manifest_sha256: str, versions: Versions, shard: str) -> str:
+    """Name a run by what was asked for."""
+    return key_of(manifest_sha256, json.dumps(vars(versions)), shard)[:12]
+
+
+def table_path(run: str, name: str) -> str:
+    """Name a run's table, relative to the city folder."""
+    return f"runs/{run}/{name}.parquet"
+
+
+def write_table(
+    store: Store, run: str, name: str, rows: Iterable[dict[str, Any]]
+) -> None:
+    """Write a run's table, sorted, so that no order of the workers shows."""
+    ordered = sorted(rows, key=lambda row: json.dumps(row, sort_keys=True))
+    table = pa.Table.from_pylist(ordered, SCHEMAS[name])
+    store.write_table(table_path(run, name), table)
+
+
+def read_table(store: Store, run: str, name: str) -> list[dict[str, Any]]:
+    """Read a run's table."""
+    return store.read_table(table_path(run, name)).to_pylist()
+
+
+def read_column(store: Store, run: str, name: str, column: str) -> list[Any]:
+    """Read one column of a run's table: of a large archive, all is too much."""
+    table = store.read_table(table_path(run, name), [column])
+    return table.column(column).to_pylist()

@@ -1,0 +1,153 @@
+"""Artifacts: what a stage made of a photo or facade, kept under a key of its making.
+
+    CITY/artifacts/<stage>/<stage version>/<first two hex digits>/<key>.parquet
+
+The key is a hash of the keys of what it was made from and of the stage's version, so an
+artifact is never wrong, only unused: it is skipped where it exists, and a changed stage
+makes new ones beside the old. It is written under another name and then moved, so that
+a killed run leaves no half of one. A rejection is an artifact too.
+"""
+
+import errno
+import hashlib
+import io
+import os
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import pyarrow as pa
+import pyarrow.fs as pafs
+import pyarrow.parquet as pq
+
+from nostalgin_core.records import Rejection
+from pipelines.store import tables
+
+ARTIFACTS: Final = "artifacts"
+VERDICT: Final = b"nostalgin.verdict"
+MADE: Final = b"made"
+REJECTED: Final = b"rejected"
+
+
+class Unstored(BaseException):
+    """What was made can't be put where it belongs; no photo's fault, it ends the run.
+
+    It is no `Exception`, so that nothing that forgives a photo's crash forgives it.
+    """
+
+
+def key_of(*parts: str) -> str:
+    """Hash parts into a key; ("ab", "c") and ("a", "bc") differ."""
+    joined = "\0".join(parts).encode()
+    return hashlib.sha256(joined).hexdigest()[:40]
+
+
+def parquet_bytes(table: pa.Table) -> bytes:
+    """Encode a table; the same rows give the same bytes."""
+    sink = io.BytesIO()
+    pq.write_table(
+        table, sink, compression="zstd", use_dictionary=False, write_statistics=False
+    )
+    return sink.getvalue()
+
+
+def textual(name: str) -> bool:
+    """Tell whether a file's name is text; a file system takes any bytes."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
+@dataclass(frozen=True)
+class Store:
+    """A city folder, on this machine or wherever Arrow's file systems reach."""
+
+    root: str  # a path, or a URI such as s3://bucket/city
+
+    def _open(self) -> tuple[pafs.FileSystem, str]:
+        """Find the file system.
+
+        Raises:
+            OSError: if the URI names none, or is no text.
+        """
+        if not textual(self.root):
+            shown = os.fsencode(self.root).decode(errors="backslashreplace")
+            raise OSError(errno.EILSEQ, f"{shown} is not UTF-8", self.root)
+        local = "://" not in self.root
+        where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
+        try:
+            return pafs.FileSystem.from_uri(where)
+        except pa.ArrowInvalid as problem:
+            raise OSError(errno.EINVAL, str(problem), self.root) from problem
+
+    def exists(self, name: str) -> bool:
+        """Tell whether a file is there."""
+        system, root = self._open()
+        return system.get_file_info(f"{root}/{name}").type == pafs.FileType.File
+
+    def read_bytes(self, name: str) -> bytes:
+        """Read a whole file.
+
+        Raises:
+            FileNotFoundError: if there is none.
+        """
+        system, root = self._open()
+        with system.open_input_stream(f"{root}/{name}") as stream:
+            return stream.read()
+
+    def write_bytes(self, name: str, data: bytes) -> None:
+        """Write a file so that it is there wholly or not at all."""
+        system, root = self._open()
+        target = f"{root}/{name}"
+        system.create_dir(target.rpartition("/")[0], recursive=True)
+        partial = f"{target}.{uuid.uuid4().hex[:8]}.partial"
+        with system.open_output_stream(partial) as stream:
+            stream.write(data)
+        system.move(partial, target)
+
+    def write_table(self, name: str, table: pa.Table) -> None:
+        """Write a table as Parquet, wholly or not at all."""
+        self.write_bytes(name, parquet_bytes(table))
+
+    def read_table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
+        """Read a table, or some of its columns.
+
+        Raises:
+            FileNotFoundError: if there is none.
+        """
+        system, root = self._open()
+        with system.open_input_file(f"{root}/{name}") as file:
+            return pq.ParquetFile(file).read(None if columns is None else list(columns))
+
+    def verdict(self, name: str) -> Rejection | bool:
+        """Tell what an artifact holds: True if made, its rejection, False if absent.
+
+        One that a power cut left empty or cut short is as good as absent.
+        """
+        if not self.exists(name):
+            return False
+        system, root = self._open()
+        with system.open_input_file(f"{root}/{name}") as file:
+            try:
+                artifact = pq.ParquetFile(file)
+            except pa.ArrowInvalid:
+                return False
+            if (artifact.schema_arrow.metadata or {}).get(VERDICT) != REJECTED:
+                return True
+            return tables.records(Rejection, artifact.read())[0]
+
+    def keep(self, name: str, made: pa.Table | Rejection) -> None:
+        """Write an artifact: rows that were made, or the rejection in their place.
+
+        Raises:
+            Unstored: if it can't be written there, as on a full disk.
+        """
+        rejected = isinstance(made, Rejection)
+        table = tables.table(Rejection, [made]) if rejected else made
+        mark = {VERDICT: REJECTED if rejected else MADE}
+        marked = table.replace_schema_metadata(
+            {**(table.schema.metadata or {}), **mark}
+        )
+        try:
+            self.write_table(name, marked)
+        except OSError as problem:
+            raise Unstored(f"{name}: {problem}") from problem

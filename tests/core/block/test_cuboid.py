@@ -1,0 +1,101 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nostalgin_core import evidence
+from nostalgin_core.block import cuboid
+from nostalgin_core.block.chain import Footprint
+from nostalgin_core.block.cuboid import Shown
+
+CORNERS = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [0.0, 6.0]])
+PLAIN = Footprint("9-a", CORNERS, ("f", None, None, None), 0)
+CORNER = Footprint("9-b", CORNERS, ("f", "g", None, None), 1)
+
+
+def shown(
+    aspect: float, *, sd: float = 0.02, score: float = 0.9, photo: str = "p"
+) -> Shown:
+    return Shown((photo, 0), aspect, sd * aspect, score)
+
+
+@given(st.floats(0.1, 3.0))
+def test_a_wall_is_as_high_as_its_elevation_says(aspect: float) -> None:
+    built = cuboid.cuboid(PLAIN, {"f": [shown(aspect)]})
+    assert built.height_m == pytest.approx(10.0 / aspect)
+    assert not built.assumed
+
+
+def test_both_facades_of_a_corner_agree_on_the_height() -> None:
+    built = cuboid.cuboid(CORNER, {"f": [shown(0.5)], "g": [shown(0.3)]})
+    assert built.height_m == pytest.approx(20.0)
+
+
+def test_one_bad_quad_among_three_moves_nothing() -> None:
+    views = [shown(0.5), shown(0.5), shown(4.0, score=0.9)]
+    assert cuboid.cuboid(PLAIN, {"f": views}).height_m == pytest.approx(20.0)
+
+
+def test_an_elevation_known_well_outweighs_a_vague_one() -> None:
+    views = [shown(0.5, sd=0.02), shown(0.2, sd=0.3)]
+    assert cuboid.cuboid(PLAIN, {"f": views}).height_m == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize("aspect", [10.0, 0.01])
+def test_a_height_that_no_house_has_is_not_believed(aspect: float) -> None:
+    built = cuboid.cuboid(PLAIN, {"f": [shown(aspect)]}, assumed_m=13.0)
+    assert built.assumed
+    assert built.height_m == 13.0
+
+
+def test_a_lot_without_a_photo_is_a_plain_volume_marked_as_assumed() -> None:
+    built = cuboid.cuboid(PLAIN, {})
+    assert built.assumed
+    assert all(wall.texture is None for wall in built.walls)
+    assert {wall.evidence for wall in built.walls} == {evidence.ASSUMED}
+
+
+def test_a_front_wears_the_best_of_its_photos() -> None:
+    views = [shown(0.5, score=0.4, photo="p"), shown(0.5, score=0.8, photo="q")]
+    assert cuboid.cuboid(PLAIN, {"f": views}).walls[0].texture == ("q", 0)
+
+
+def test_a_second_front_without_a_photo_wears_a_copy_and_says_so() -> None:
+    walls = cuboid.cuboid(CORNER, {"f": [shown(0.5)]}).walls
+    assert [wall.evidence for wall in walls] == [
+        None,
+        evidence.COPIED,
+        evidence.ASSUMED,
+        evidence.ASSUMED,
+    ]
+
+
+def test_copies_go_round_all_sides_if_asked() -> None:
+    walls = cuboid.cuboid(PLAIN, {"f": [shown(0.5)]}, copied=True).walls
+    assert [wall.evidence for wall in walls] == [None, *[evidence.COPIED] * 3]
+    assert {wall.texture for wall in walls} == {("p", 0)}
+
+
+def test_walls_follow_the_footprint_round() -> None:
+    walls = cuboid.cuboid(PLAIN, {}).walls
+    for edge, wall in enumerate(walls):
+        assert wall.start_m == tuple(CORNERS[edge])
+        assert wall.end_m == tuple(CORNERS[(edge + 1) % 4])
+
+
+@given(st.lists(st.floats(1, 100), min_size=1, max_size=9))
+def test_with_equal_weights_it_is_the_median(values: list[float]) -> None:
+    found = cuboid.weighted_median(values, [1.0] * len(values))
+    assert found == pytest.approx(float(np.median(values)))
+
+
+def test_a_corner_wall_on_a_street_wears_a_copy_though_it_is_no_known_front() -> None:
+    silent = replace(CORNER, front_ids=("f", None, None, None))
+    walls = cuboid.cuboid(silent, {"f": [shown(0.5)]}).walls
+    assert [wall.evidence for wall in walls[:3]] == [
+        None,
+        evidence.COPIED,
+        evidence.ASSUMED,
+    ]

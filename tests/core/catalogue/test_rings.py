@@ -1,0 +1,204 @@
+import csv
+
+import numpy as np
+import pytest
+
+from nostalgin_core.block import block
+from nostalgin_core.catalogue import catalogue, rings
+from nostalgin_core.catalogue.directions import directions
+from nostalgin_core.catalogue.entry import Entry
+from nostalgin_core.records import Front
+from tests.data import DATA, needs_data
+
+
+def entries(*rows: tuple[str, str, str], block: str = "9") -> list[Entry]:
+    """Make entries of lot, street and address."""
+    cells = [
+        {"block": block, "lot": lot, "street": street, "address": address}
+        for lot, street, address in rows
+    ]
+    return list(catalogue.read(cells).entries)
+
+
+def walk(fronts: tuple[Front, ...], ring: int = 0) -> list[str]:
+    """List the lots of a ring as one walks round it."""
+    return [one.lot for one in fronts if one.ring == ring]
+
+
+# An ordinary block of the numbered grid: lots run anticlockwise from the south-west.
+PLAIN = entries(
+    ("1", "West 10 Street", "139"),
+    ("2", "West 10 Street", "137"),
+    ("3", "West 10 Street", "131-135"),
+    ("5", "Sixth Avenue", "201"),
+    ("6", "Sixth Avenue", "203"),
+    ("8", "West 11 Street", "130"),
+    ("9", "West 11 Street", "134"),
+    ("10", "West 11 Street", "136-140"),
+    ("12", "Seventh Avenue", "64"),
+    ("14", "Seventh Avenue", "60"),
+)
+
+
+def test_an_ordinary_block_comes_out_in_the_order_of_its_lots() -> None:
+    fronts, warnings = rings.fronts(PLAIN)
+    assert walk(fronts) == ["1", "2", "3", "5", "6", "8", "9", "10", "12", "14"]
+    assert [one.side for one in fronts] == [0, 0, 0, 1, 1, 2, 2, 2, 3, 3]
+    assert not warnings
+
+
+def test_the_order_of_rows_does_not_matter() -> None:
+    rng = np.random.default_rng(0)
+    shuffled = [PLAIN[place] for place in rng.permutation(len(PLAIN))]
+    assert rings.fronts(shuffled) == rings.fronts(PLAIN)
+
+
+def test_several_rows_of_one_lot_are_one_front() -> None:
+    again = entries(("3", "West 10 Street", "131-135"), ("3", "West 10 Street", ""))
+    assert rings.fronts([*PLAIN, *again])[0] == rings.fronts(PLAIN)[0]
+
+
+def test_a_lot_on_two_streets_has_two_fronts() -> None:
+    corner = entries(("3", "Sixth Avenue", "199"))
+    fronts, _ = rings.fronts([*PLAIN, *corner])
+    ids = [one.front_id for one in fronts if one.lot == "3"]
+    assert ids == ["9-3-0", "9-3-1"]
+
+
+def test_a_lot_above_a_hundred_stands_by_the_lot_it_was_split_from() -> None:
+    fronts, _ = rings.fronts([*PLAIN, *entries(("109", "West 11 Street", ""))])
+    assert walk(fronts)[5:9] == ["8", "9", "109", "10"]
+
+
+def test_a_street_with_odd_and_even_numbers_cuts_the_block_in_two_rings() -> None:
+    fronts, _ = rings.fronts(CUT)
+    assert walk(fronts, 0) == ["3", "4", "6", "7", "20", "2", "1"]
+    assert walk(fronts, 1) == ["10", "11", "13", "15", "16", "18", "9"]
+
+
+CUT = entries(
+    ("1", "7 Avenue", "561"),
+    ("2", "7 Avenue", "567"),
+    ("3", "West 40 Street", "147"),
+    ("4", "West 40 Street", "143"),
+    ("6", "Broadway", "1431"),
+    ("7", "Broadway", "1437"),
+    ("9", "Broadway", "1434"),
+    ("10", "West 40 Street", "119"),
+    ("11", "West 40 Street", "105"),
+    ("13", "6 Avenue", "1071"),
+    ("15", "West 41 Street", "108"),
+    ("16", "West 41 Street", "120"),
+    ("18", "Broadway", "1446"),
+    ("20", "Broadway", "1441"),
+)
+
+
+def test_a_ring_keeps_the_side_on_which_it_lists_no_lot() -> None:
+    fronts, _ = rings.fronts(CUT)
+    sides = {one.street: one.side for one in fronts if one.ring == 0}
+    assert sides == {"West 40 Street": 0, "Broadway": 1, "7 Avenue": 3}
+
+
+def test_the_numbers_of_a_street_run_one_way_in_all_its_blocks() -> None:
+    lone = entries(
+        ("1", "West 11 Street", "139"), ("2", "West 11 Street", "131"), block="10"
+    )
+    law, _ = directions(
+        [[("west 11 street", -1, 3.0)], [("west 11 street", 1, 0.0)]],
+    )
+    assert law == {"west 11 street": -1}
+    fronts, _ = rings.fronts([*PLAIN, *lone])
+    assert [one.address for one in fronts if one.block == "10"] == ["139", "131"]
+
+
+def test_opposite_sides_settle_a_street_that_too_few_lots_speak_for() -> None:
+    ring = [("a", 1, -6.0), ("east", 1, 6.0), ("b", -1, 6.0), ("west", 1, 1.0)]
+    assert directions([ring])[0] == {"a": -1, "east": 1, "b": -1, "west": -1}
+
+
+def test_house_numbers_that_run_against_the_lots_are_named() -> None:
+    swapped = entries(
+        ("1", "Elm", "101"),
+        ("2", "Elm", "109"),
+        ("3", "Elm", "105"),
+        ("4", "Elm", "113"),
+    )
+    fronts, warnings = rings.fronts(swapped)
+    assert walk(fronts) == ["1", "3", "2", "4"]
+    assert "lots 3 (105) and 2 (109)" in warnings[0]
+
+
+def test_sides_that_a_catalogue_gives_are_taken() -> None:
+    given = [
+        {"block": "1", "lot": lot, "side": side, "order": order}
+        for lot, side, order in (("c", "1", "1"), ("a", "0", "2"), ("b", "0", "1"))
+    ]
+    fronts, _ = rings.fronts(catalogue.read(given).entries)
+    assert [(one.lot, one.side, one.rank) for one in fronts] == [
+        ("b", 0, 0),
+        ("a", 0, 1),
+        ("c", 1, 2),
+    ]
+
+
+def test_lots_without_streets_stand_in_one_row() -> None:
+    fronts, _ = rings.fronts(entries(("2", "", ""), ("1", "", ""), ("10", "", "")))
+    assert walk(fronts) == ["1", "2", "10"]
+    assert {one.side for one in fronts} == {0}
+
+
+def test_front_ids_are_unique() -> None:
+    ids = [one.front_id for one in rings.fronts(CUT)[0]]
+    assert len(ids) == len(set(ids))
+
+
+@needs_data
+@pytest.mark.parametrize(("block", "others"), [("993", False), ("993", True)])
+def test_block_993_comes_out_as_it_stood(block: str, *, others: bool) -> None:
+    fronts, _ = rings.fronts(listed(None if others else block))
+    fronts = tuple(one for one in fronts if one.block == block)
+    assert walk(fronts, 0) == ["104", "5", "7", "8", "10", "55", "3", "1"]
+    assert walk(fronts, 1)[3:] == ["36", "38", "43", "47", "11"]
+    assert sorted(walk(fronts, 1)[:3]) == ["22", "25", "29"]
+
+
+@needs_data
+@pytest.mark.parametrize("block", ["996", "997"])
+def test_house_numbers_run_along_every_side_of_the_whole_blocks(block: str) -> None:
+    fronts = [one for one in rings.fronts(listed())[0] if one.block == block]
+    assert {one.ring for one in fronts} == {0}
+    falling = {"West 43 Street", "Broadway"} | (
+        {"West 44 Street"} if block == "997" else set()
+    )
+    for street in {one.street for one in fronts}:
+        numbers = [
+            int(one.address.split("-")[0]) for one in fronts if one.street == street
+        ]
+        assert numbers == sorted(numbers, reverse=street in falling)
+
+
+def listed(block: str | None = None) -> list[Entry]:
+    """Read the archive's list, or one block of it."""
+    text = (DATA / "taxphotos/catalogue.csv").read_text("utf-8-sig").splitlines()
+    entries = catalogue.read(list(csv.DictReader(text))).entries
+    return [one for one in entries if block in (None, one.block)]
+
+
+def test_strange_catalogues_make_fronts_of_different_names_and_blocks_that_stand() -> (
+    None
+):
+    rng = np.random.default_rng(5)
+    streets = ["", "Broadway", "West 1 Street", "West 2 Street", "A Avenue", "rue X"]
+    numbers = ["", "rear", "7", "12", "101-109", "130", "132-6"]
+    for _ in range(6):
+        rows = [
+            (f"{rng.integers(1, 150)}", rng.choice(streets), rng.choice(numbers))
+            for _ in range(rng.integers(1, 14))
+        ]
+        fronts, _ = rings.fronts(entries(*rows))
+        ids = [one.front_id for one in fronts]
+        assert len(ids) == len(set(ids))
+        built = block.block("9", fronts, [], {})
+        stood = [w.front_id for one in built.buildings for w in one.walls if w.front_id]
+        assert sorted(stood) == sorted(ids)

@@ -1,0 +1,233 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from pipelines.index import manifest
+from pipelines.index.index import Indexed, Nothing, block_and_lot, index
+from pipelines.store.store import Store
+from tests.data import DATA, needs_data
+
+CATALOGUE = """photo,block,lot,street,address,width_m,remark
+b/993_1.jpg,993,1,First Street,1,10,
+b/993_2.jpg,993,2,First Street,3,8,torn
+,993,3,First Street,5,9,
+b/994_1.jpg,994,1,Second Street,2,7,
+"""
+
+
+@pytest.fixture
+def photos(tmp_path: Path) -> Path:
+    folder = tmp_path / "photos"
+    for name in ("b/993_1.jpg", "b/993_2.jpg", "b/994_1.jpg"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(b"x")
+    (folder / "notes.txt").write_text("no photo")
+    return folder
+
+
+def indexed(photos: Path, text: str | None, **options: object) -> Indexed:
+    listed = photos.parent / "list.csv"
+    if text is not None:
+        listed.write_text(text)
+    city = str(photos.parent / "city")
+    return index(photos, listed if text is not None else None, city, **options)  # type: ignore[arg-type]
+
+
+def pairs(photos: Path) -> list[tuple[str, str | None]]:
+    found = manifest.read(Store(str(photos.parent / "city")))
+    return [(row.photo, row.front and row.front.lot) for row in found.rows]
+
+
+def test_each_photo_gets_its_front_and_each_front_a_row(photos: Path) -> None:
+    made = indexed(photos, CATALOGUE)
+    assert (made.photos, made.fronts, made.blocks) == (3, 4, 2)
+    assert sorted(pairs(photos)) == [
+        ("", "3"),
+        ("b/993_1.jpg", "1"),
+        ("b/993_2.jpg", "2"),
+        ("b/994_1.jpg", "1"),
+    ]
+
+
+def test_what_index_writes_build_reads_without_complaint(photos: Path) -> None:
+    indexed(photos, CATALOGUE)
+    found = manifest.read(Store(str(photos.parent / "city")))
+    assert (found.rejections, found.warnings) == ((), ())
+
+
+def test_a_block_can_be_taken_alone(photos: Path) -> None:
+    made = indexed(photos, CATALOGUE, blocks=["994"])
+    assert pairs(photos) == [("b/994_1.jpg", "1")]
+    assert (made.without_front, made.rejections) == ((), ())
+
+
+def test_indexing_twice_writes_the_same_bytes(photos: Path) -> None:
+    city = photos.parent / "city"
+    indexed(photos, CATALOGUE)
+    first = {path.name: path.read_bytes() for path in city.iterdir()}
+    indexed(photos, CATALOGUE)
+    assert {path.name: path.read_bytes() for path in city.iterdir()} == first
+
+
+@pytest.mark.parametrize("title", ["<b>x</b>\n\0", "x" * 10_000, "\udcff"])
+def test_a_hostile_title_becomes_one_short_line(photos: Path, title: str) -> None:
+    indexed(photos, CATALOGUE, title=title)
+    kept = manifest.read(Store(str(photos.parent / "city"))).title
+    assert len(kept) <= 100
+    assert kept == "" or kept.isprintable()
+
+
+def test_without_a_catalogue_file_names_tell_the_lots(photos: Path) -> None:
+    made = indexed(photos, None)
+    assert (made.photos, made.blocks) == (3, 2)
+    assert ("b/993_2.jpg", "2") in pairs(photos)
+
+
+def test_a_folder_of_holiday_names_becomes_one_row(tmp_path: Path) -> None:
+    folder = tmp_path / "main-street"
+    folder.mkdir()
+    for name in ("bakery.jpg", "corner.jpg", "school.jpg"):
+        (folder / name).write_bytes(b"x")
+    made = indexed(folder, None)
+    assert (made.photos, made.fronts, made.blocks) == (3, 3, 1)
+
+
+def test_a_stranger_is_kept_without_a_front_and_named(photos: Path) -> None:
+    (photos / "stranger.jpg").write_bytes(b"x")
+    made = indexed(photos, CATALOGUE)
+    assert made.without_front == ("stranger.jpg",)
+    assert ("stranger.jpg", None) in pairs(photos)
+    assert [one.key for one in made.rejections] == ["stranger.jpg"]
+
+
+@pytest.mark.parametrize(
+    ("name", "lot"),
+    [
+        ("nynyma_rec0040_1_00993_0008a.jpg", ("993", "8")),
+        ("b/993_8a.jpg", ("993", "8")),
+        ("993-08.png", ("993", "8")),
+        ("block 993 lot 8.tif", ("993", "8")),
+        ("bakery.jpg", None),
+        ("IMG_20231104_1200.jpg", None),
+    ],
+)
+def test_file_names_tell_block_and_lot(name: str, lot: tuple[str, str] | None) -> None:
+    assert block_and_lot(name) == lot
+
+
+def test_an_empty_folder_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(Nothing, match=tmp_path.name):
+        index(tmp_path, None, str(tmp_path / "city"))
+
+
+def test_a_missing_folder_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(Nothing, match="nowhere is no folder"):
+        index(tmp_path / "nowhere", None, str(tmp_path / "city"))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "a,b\n1,2\n", "block,lot\n,\n", "\0\0", 'a"b,"\n']
+)
+def test_a_nonsense_catalogue_is_refused_by_name(photos: Path, text: str) -> None:
+    with pytest.raises(Nothing, match=r"list\.csv"):
+        indexed(photos, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("photo;block;lot\nb/993_1.jpg;993;1\n", "save it with commas"),
+        ("block,lot\n993,\n", "row 2: no lot: fill in the cell"),
+        ("block,lot\n993,1,7\n", "row 2: too many cells"),
+    ],
+)
+def test_a_catalogue_without_a_good_row_names_its_first_bad_one(
+    photos: Path, text: str, words: str
+) -> None:
+    with pytest.raises(Nothing, match=words):
+        indexed(photos, text)
+
+
+def test_a_file_whose_name_is_no_text_is_named_and_spoils_no_other(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for name in (b"\xff.jpg", b"5_1.jpg", b"two\nlines.jpg"):
+        Path(os.fsdecode(os.fsencode(folder) + b"/" + name)).write_bytes(b"x")
+    made = indexed(folder, None)
+    assert made.photos == 2
+    assert [one.key for one in made.rejections] == ["\\xff.jpg"]
+    (folder / "5_1.jpg").unlink()
+    (folder / "two\nlines.jpg").unlink()
+    with pytest.raises(Nothing, match="rename the files"):
+        indexed(folder, None)
+
+
+@pytest.mark.parametrize("name", ["x" * 100, "a\\b"])
+def test_a_folder_whose_name_is_no_block_s_is_a_row_all_the_same(
+    tmp_path: Path, name: str
+) -> None:
+    folder = tmp_path / "photos" / name
+    folder.mkdir(parents=True)
+    (folder / "bakery.jpg").write_bytes(b"x")
+    made = indexed(tmp_path / "photos", None)
+    assert (made.photos, made.fronts, made.rejections) == (1, 1, ())
+
+
+def test_names_of_which_none_makes_sense_are_told_by_the_first(tmp_path: Path) -> None:
+    folder = tmp_path / "photos" / " "
+    folder.mkdir(parents=True)
+    (folder / "bakery.jpg").write_bytes(b"x")
+    with pytest.raises(Nothing, match="file names row 2: path outside"):
+        indexed(tmp_path / "photos", None)
+
+
+def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:
+    with pytest.raises(Nothing, match=r"gone\.csv"):
+        index(photos, photos / "gone.csv", str(photos.parent / "city"))
+
+
+def test_a_block_that_is_not_there_is_named(photos: Path) -> None:
+    with pytest.raises(Nothing, match="1000"):
+        indexed(photos, CATALOGUE, blocks=["1000"])
+
+
+def test_an_empty_line_is_counted_and_else_ignored(photos: Path) -> None:
+    text = CATALOGUE.replace("b/993_2", "\n,,,,,,\nb/993_2").replace(",3,8,", ",3,x,")
+    made = indexed(photos, text)
+    assert [one.key for one in made.rejections] == ["list.csv row 5", "b/993_2.jpg"]
+
+
+def test_a_carriage_return_in_a_name_does_not_break_the_mended_manifest(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    for name in ("5_1.jpg", "two\rlines.jpg"):
+        (folder / name).write_bytes(b"x")
+    indexed(folder, None)
+    path = tmp_path / "city" / manifest.CSV
+    path.write_bytes(path.read_bytes().replace(b"7.62", b"8"))
+    assert sorted(lot for lot, _ in pairs(folder)) == ["5_1.jpg", "two\rlines.jpg"]
+
+
+def test_a_bad_row_is_named_and_spoils_no_other(photos: Path) -> None:
+    made = indexed(
+        photos, CATALOGUE.replace("First Street,1,10", "First Street,1,wide")
+    )
+    assert made.rejections[0].key == "list.csv row 2"
+    assert made.fronts == 3
+
+
+@needs_data
+def test_block_993_of_the_archive_has_its_twenty_photos_on_two_rings(
+    tmp_path: Path,
+) -> None:
+    folder = DATA / "taxphotos"
+    city = str(tmp_path / "city")
+    made = index(folder / "photos", folder / "catalogue.csv", city, blocks=["993"])
+    assert made.photos == 20
+    rows = manifest.read(Store(city)).rows
+    assert {row.front.ring for row in rows if row.front} == {0, 1}

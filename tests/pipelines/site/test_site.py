@@ -1,0 +1,233 @@
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from nostalgin_core import evidence
+from nostalgin_core.model import atlas, picture
+from nostalgin_core.records import Assignment, Block, Building, Front, Seen, Wall
+from pipelines.site import site
+from pipelines.site.record import record as recorded
+
+WEBP = site.thumbnail(np.zeros((40, 30), np.uint8))
+
+
+@pytest.fixture
+def viewer(tmp_path: Path) -> Path:
+    folder = tmp_path / "viewer"
+    (folder / "assets").mkdir(parents=True)
+    (folder / "index.html").write_text("<!doctype html>")
+    (folder / "assets" / "index-1.js").write_text("1")
+    return folder
+
+
+def model(name: str = "993", glb: bytes = b"glTF", **more: Any) -> site.BlockModel:
+    photos = [{"key": "ab"}, {"key": "gone"}]
+    record = {"block": name, "buildings": [{"id": f"{name}-1", "photos": photos}]}
+    low, high = (0.0, 0.0, 0.0), (10.0, 20.0, 30.0)
+    return site.BlockModel(name, glb, record, low, high, **more)
+
+
+def assembled(
+    folder: Path,
+    viewer: Path,
+    *blocks: site.BlockModel,
+    photos: dict[str, bytes] | None = None,
+    title: str = "A city",
+) -> dict[str, Any]:
+    photos = {"ab": WEBP} if photos is None else photos
+    site.assemble(folder, blocks=blocks, photos=photos, title=title, viewer=viewer)
+    return json.loads((folder / "site.json").read_text())
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    found = folder.rglob("*")
+    return {
+        str(one.relative_to(folder)): one.read_bytes() for one in found if one.is_file()
+    }
+
+
+def test_every_file_that_is_named_is_there(tmp_path: Path, viewer: Path) -> None:
+    record = assembled(tmp_path / "site", viewer, model())
+    (block,) = record["blocks"]
+    tileset = json.loads((tmp_path / "site/tileset.json").read_text())
+    (leaf,) = tileset["root"]["children"]
+    assert leaf["content"]["uri"] == block["uri"]
+    assert (tmp_path / "site" / block["uri"]).read_bytes() == b"glTF"
+    first, second = block["buildings"][0]["photos"]
+    assert (tmp_path / "site" / first["file"]).read_bytes() == WEBP
+    assert second["file"] is None
+
+
+def test_the_same_city_gives_the_same_bytes(tmp_path: Path, viewer: Path) -> None:
+    for name in ("one", "two"):
+        assembled(tmp_path / name, viewer, model(), model("994"))
+    assert files(tmp_path / "one") == files(tmp_path / "two")
+
+
+def test_the_tileset_is_swapped_in_last(
+    tmp_path: Path, viewer: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    order = []
+    write = site.Folder.write
+    monkeypatch.setattr(
+        site.Folder,
+        "write",
+        lambda self, name, data: order.append(name) or write(self, name, data),
+    )
+    assembled(tmp_path / "site", viewer, model())
+    assert order[-1] == "tileset.json"
+
+
+def test_the_site_tells_the_colours_that_its_models_evidence_is_painted_in(
+    tmp_path: Path, viewer: Path
+) -> None:
+    legend = assembled(tmp_path / "site", viewer, model())["legend"]
+    codes = np.array(sorted(evidence.NAMES), np.uint8)[None]
+    page = atlas.Atlas(codes, codes, codes, {}, ())
+    painted = Image.open(io.BytesIO(picture.evidence_key(page).data)).convert("RGB")
+    tints = [legend[str(code)]["tint"] for code in codes[0]]
+    assert np.asarray(painted)[0].tolist() == tints
+    assert len({tuple(tint) for tint in tints}) == len(legend) == codes.size
+
+
+def test_a_new_model_takes_the_place_of_the_old(tmp_path: Path, viewer: Path) -> None:
+    folder = tmp_path / "site"
+    old = assembled(folder, viewer, model())["blocks"][0]["uri"]
+    new = assembled(folder, viewer, model(glb=b"glTF2"), photos={})["blocks"][0]["uri"]
+    assert old != new
+    assert not (folder / old).exists()
+    assert list((folder / "photos").glob("*")) == []
+
+
+def test_hostile_names_stay_inside(tmp_path: Path, viewer: Path) -> None:
+    before = set(files(tmp_path))
+    names = ["../../up", "/etc/x", "a\0b", "", "..", "C:\\x", "a/b"]
+    assembled(
+        tmp_path / "site",
+        viewer,
+        *map(model, names),
+        photos={f"{n}/..": WEBP for n in names},
+    )
+    new = set(files(tmp_path)) - before
+    assert all(name.startswith("site/") for name in new)
+    assert sum(name.startswith("site/blocks/") for name in new) == len(names)
+
+
+def test_names_that_look_alike_do_not_clash() -> None:
+    names = ["a/b", "a-b", "a b", "a\\b", "A-B"]
+    assert len({site.safe(name) for name in names}) == len(names)
+    assert site.safe("993") == "993"
+
+
+def test_a_link_that_leads_out_is_refused(tmp_path: Path, viewer: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site/blocks").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(OSError, match="leads out"):
+        assembled(tmp_path / "site", viewer, model())
+    assert list((tmp_path / "elsewhere").iterdir()) == []
+
+
+def test_a_missing_viewer_names_the_command(tmp_path: Path) -> None:
+    with pytest.raises(site.ViewerMissingError, match="make viewer"):
+        assembled(tmp_path / "site", tmp_path, model())
+
+
+def test_two_blocks_of_one_name_are_a_mistake(tmp_path: Path, viewer: Path) -> None:
+    with pytest.raises(ValueError, match="993"):
+        assembled(tmp_path / "site", viewer, model(), model())
+
+
+def test_thumbnails_never_grow() -> None:
+    small = site.thumbnail(np.zeros((40, 30), np.uint8))
+    large = site.thumbnail(np.zeros((4000, 3000), np.uint8), longest_px=100)
+    assert site.suffix(small) == site.suffix(large) == ".webp"
+    assert len(large) < 1000
+
+
+def front(side: int, *, rank: int, width_m: float) -> Front:
+    return Front(
+        front_id=f"993-11-{side}",
+        block="993",
+        lot="11",
+        ring=0,
+        side=side,
+        rank=rank,
+        street=f"Street {side}",
+        address="1",
+        width_m=width_m,
+        depth_m=None,
+        width_assumed=False,
+    )
+
+
+def corner() -> Block:
+    """A building of 10 by 30 metres; a photograph shows its first front only."""
+    square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 30.0], [0.0, 30.0]])
+    ends = [tuple(map(float, point)) for point in square]
+    wears = [("ab", 0), None, None, None]
+    walls = tuple(
+        Wall(
+            ends[i],
+            ends[(i + 1) % 4],
+            f"993-11-{i}" if i < 2 else None,
+            wears[i],
+            None if i == 0 else 6,
+        )
+        for i in range(4)
+    )
+    return Block(
+        "993", (Building("993-11", square, 20.0, walls, assumed=False),), (square,)
+    )
+
+
+def told(**more: Any) -> dict[str, Any]:
+    seen = Seen(
+        photo="ab",
+        facade=0,
+        target=True,
+        target_score=1.0,
+        score=1.0,
+        aspect=0.5,
+        aspect_sd=0.01,
+        left_px=0.0,
+        area_px=1e5,
+        photographed=0.8,
+    )
+    known = recorded(
+        corner(),
+        fronts=[front(1, rank=1, width_m=30.0), front(0, rank=0, width_m=10.0)],
+        assignments=[
+            Assignment("993-11-0", "ab", 0, 0.9),
+            Assignment("993-11-0", "cd", 1, 0.5),
+        ],
+        seen=[seen],
+        photos={"ab": {"credit": "Archive"}},
+        **more,
+    )
+    return known["buildings"][0]
+
+
+def test_a_front_that_no_photograph_shows_counts_as_unseen() -> None:
+    assert told()["photographed_share"] == pytest.approx(0.8 * 10 / 40)
+
+
+def test_height_is_as_sure_as_the_aspect_it_comes_from() -> None:
+    assert told()["height_sd_m"] == pytest.approx(20.0 * 0.01 / 0.5)
+
+
+def test_the_photograph_that_is_worn_comes_first() -> None:
+    first, second = told()["photos"]
+    assert first == {"key": "ab", "used": True, "credit": "Archive"}
+    assert second == {"key": "cd", "used": False}
+
+
+def test_addresses_run_in_the_order_of_the_ring() -> None:
+    assert told()["address"] == "1 Street 0; 1 Street 1"
+    assert told()["width_m"] == 10.0
+    assert told(more={"993-11": {"year": "1940"}})["year"] == "1940"
