@@ -61,15 +61,7 @@ def arrange(
     likely = merits(masks, [f.score for f in kept], photo.frame, aim)
     targets = _targets(masks, likely, recorded, bend)
     return tuple(
-        Facade(
-            index=i,
-            score=front.score,
-            target=i in targets,
-            target_score=float(likely[i]),
-            mask=front.mask,
-            amodal=amodal(front.mask, hidden),
-            alpha=front.mask.astype(np.float32),
-        )
+        _facade(i, front, hidden, float(likely[i]), target=i in targets)
         for i, front in enumerate(kept)
     )
 
@@ -81,6 +73,20 @@ CRUMB = 0.1  # of the largest piece: a lamp post may cut a front in two
 class _Front:
     score: float
     mask: Mask
+
+
+def _facade(
+    index: int, front: _Front, hidden: Mask, merit: float, *, target: bool
+) -> Facade:
+    return Facade(
+        index=index,
+        score=front.score,
+        target=target,
+        target_score=merit,
+        mask=front.mask,
+        amodal=amodal(front.mask, hidden),
+        alpha=front.mask.astype(np.float32),
+    )
 
 
 def covered_by(

@@ -19,7 +19,7 @@ from nostalgin_core.scenes.lot import Lot
 from nostalgin_core.scenes.scenery import Wear, build
 from nostalgin_core.scenes.sprite import Sprite
 from nostalgin_core.scenes.street import Neighbourhood, PaintedBlock
-from nostalgin_core.scenes.truth import PaintedPhoto, Truth
+from nostalgin_core.scenes.truth import PaintedPhoto, TrueFacade, Truth
 
 PERFECT = Flaws()
 
@@ -63,34 +63,16 @@ def photograph(
         return PaintedPhoto(photo_name(lot, view), fogged, truth)
     fine = magnified(camera)
     size = (SUPER * shape[0], SUPER * shape[1])
-    canvas, walls = build(
-        rng,
-        fine,
-        blocks,
-        size,
-        sun=neighbourhood.sun,
-        wear=wear,
-        stray_m=flawed.stray_m,
-    )
+    sun, stray_m = neighbourhood.sun, flawed.stray_m
+    built = build(rng, fine, blocks, size, sun=sun, wear=wear, stray_m=stray_m)
+    canvas, walls = built
     canvas = flaws.bend(canvas, flawed.barrel) if flawed.barrel else canvas
     sprites = dress(rng, fine, canvas.tone.shape, lot, blocks, text=text)
     light, shares, through = composite(canvas, sprites)
     hole = film.punch(rng, shape) if rng.random() < 0.12 else None
-    facades = true_facades(
-        canvas,
-        through,
-        camera,
-        walls,
-        lot=lot,
-        inside=inside,
-        hole=hole,
-        frame=frame,
-    )
-    if flawed.barrel:
-        facades = tuple(
-            replace(one, quad=flaws.bent(one.quad, shape, flawed.barrel))
-            for one in facades
-        )
+    shown = {"lot": lot, "inside": inside, "hole": hole, "frame": frame}
+    facades = true_facades(canvas, through, camera, walls, **shown)
+    facades = as_bent(facades, shape, flawed.barrel)
     occluders = true_occluders(sprites, shares, shape, inside, hole)
     image = soften(shrink(light), shape)
     if hole is not None:
@@ -100,6 +82,17 @@ def photograph(
     truth = Truth(camera, facades, occluders, rest, text, frame)
     negative = film.develop(rng, image, inside)
     return PaintedPhoto(photo_name(lot, view), negative, truth)
+
+
+def as_bent(
+    facades: tuple[TrueFacade, ...], shape: tuple[int, int], barrel: float
+) -> tuple[TrueFacade, ...]:
+    """Bend the quads of facades as the lens bends the picture."""
+    if not barrel:
+        return facades
+    return tuple(
+        replace(one, quad=flaws.bent(one.quad, shape, barrel)) for one in facades
+    )
 
 
 def magnified(camera: Camera) -> Camera:

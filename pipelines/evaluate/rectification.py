@@ -69,11 +69,7 @@ def evaluate(
     """
     named("part", PARTS if parts is None else parts, PARTS)
     named("detector", detector, tuple(DETECTORS))
-    there = ("painted",) if parts == ("painted",) else present(data)
-    parts = there if parts is None else parts
-    for part in parts:
-        if part not in there:
-            raise Unmeasurable(f"{data} has no data for {part}: {NEEDS[part]}")
+    parts = wanted(data, parts)
     used = {name: DETECTORS[name] for name in detector}
     sets = [data / name for name in SETS if (data / name).is_dir()]
     report: dict[str, Any] = {}
@@ -91,10 +87,22 @@ def evaluate(
             holding(sets, block) if "labels" in parts else [], drawn, block, keep=keep
         )
     if "table2" in parts:
-        report["table2"] = {
-            one.name: search_space.evaluate(one / "photos") for one in sets
-        }
+        folders = {one.name: one / "photos" for one in sets}
+        report["table2"] = {n: search_space.evaluate(f) for n, f in folders.items()}
     return report
+
+
+def wanted(data: Path, parts: tuple[str, ...] | None) -> tuple[str, ...]:
+    """List the parts to measure: those named, or else all that there is data for.
+
+    Raises:
+        Unmeasurable: if there is no data for one that is named.
+    """
+    there = ("painted",) if parts == ("painted",) else present(data)
+    for part in parts or ():
+        if part not in there:
+            raise Unmeasurable(f"{data} has no data for {part}: {NEEDS[part]}")
+    return there if parts is None else parts
 
 
 def labels(

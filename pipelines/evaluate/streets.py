@@ -3,7 +3,7 @@
 Rectification gets the painter's masks. On fronts that lie wholly in the frame: how far
 corners are off, in pixels and in hundredths of the front's width, and by how many
 hundredths the aspect ratio is. On all fronts: how often the truth lies within 1.96
-stated standard deviations (`measure_coverage`) of
+stated standard deviations (`measure.coverage`) of
 
 - the horizontal vanishing point and the vertical one, as angles through the true camera
   (their stated deviation is of both directions together, so 95 % is the least);

@@ -48,7 +48,7 @@ class ViewerMissingError(FileNotFoundError):
 class BlockModel:
     """One block's model, what is known of it, and where it lies.
 
-    `record` is what `site_record.record` writes: `block`, `outline_m` and `buildings`,
+    `record` is what `record.record` writes: `block`, `outline_m` and `buildings`,
     whose `photos` name keys of the photographs. It may carry more, which is kept.
     """
 

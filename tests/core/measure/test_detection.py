@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -121,8 +123,9 @@ def test_coco_s_own_program_agrees() -> None:
     rng = np.random.default_rng(11)
     images, annotations, results, ours = [], [], [], {0.5: [], 0.75: []}
 
-    def coded(mask: np.ndarray) -> dict:
-        return coder.encode(np.asfortranarray(mask.astype(np.uint8)))
+    def told(image: int, mask: np.ndarray, **more: Any) -> dict[str, Any]:
+        coded = coder.encode(np.asfortranarray(mask.astype(np.uint8)))
+        return {"image_id": image, "category_id": 1, "segmentation": coded, **more}
 
     for image in range(1, 9):
         images.append({"id": image, "height": SIZE, "width": SIZE})
@@ -135,26 +138,13 @@ def test_coco_s_own_program_agrees() -> None:
         masks += [_square(*place, 9) for place in rng.integers(0, 30, (3, 2))]
         scores = rng.uniform(size=len(masks))
         for mask, crowd in [(t, 0) for t in truths] + [(group, 1)]:
-            annotations.append(
-                {
-                    "id": len(annotations) + 1,
-                    "image_id": image,
-                    "category_id": 1,
-                    "segmentation": coded(mask),
-                    "area": int(mask.sum()),
-                    "bbox": [0, 0, 1, 1],
-                    "iscrowd": crowd,
-                }
-            )
-        for mask, score in zip(masks, scores, strict=True):
-            results.append(
-                {
-                    "image_id": image,
-                    "category_id": 1,
-                    "segmentation": coded(mask),
-                    "score": float(score),
-                }
-            )
+            size = {"area": int(mask.sum()), "bbox": [0, 0, 1, 1]}
+            number = len(annotations) + 1
+            annotations.append(told(image, mask, id=number, iscrowd=crowd, **size))
+        results += [
+            told(image, mask, score=float(score))
+            for mask, score in zip(masks, scores, strict=True)
+        ]
         for least, parts in ours.items():
             parts.append(matches(list(scores), masks, truths, group, least=least))
     truth = coco.COCO()

@@ -14,7 +14,6 @@ from nostalgin_core.records import Box, Photo, Rejection
 from nostalgin_core.rectify import camera, lines, manhattan
 from pipelines import cli
 from pipelines.evaluate import (
-    detectors,
     label_points,
     labelled,
     peers,
@@ -122,28 +121,6 @@ def test_a_labels_noise_moves_its_points_by_what_is_foretold() -> None:
         ]
         foretold = label_points.label_sd_deg(quad, rank, CAMERA)
         assert foretold == pytest.approx(np.sqrt(np.mean(np.square(turns))), rel=0.1)
-
-
-@pytest.mark.parametrize("detect", [detectors.lsd, detectors.hough])
-def test_other_detectors_find_a_painted_fronts_lines(detect: lines.Detector) -> None:
-    image = photograph().photo.image
-    strict, loose = detect(image, (16, 4.0), (8, 9.0))
-    assert len(loose) > 30
-    np.testing.assert_array_equal(strict, loose)
-    (nothing,) = detect(np.full((60, 60), 90, np.uint8), (8, 9.0))
-    assert nothing.shape == (0, 4)
-
-
-@pytest.mark.parametrize("detect", [lines.detect, detectors.lsd, detectors.hough])
-def test_no_detector_finds_a_line_wholly_outside_the_mask(
-    detect: lines.Detector,
-) -> None:
-    image = photograph().photo.image
-    where = np.zeros(image.shape, bool)
-    where[:, :300] = True
-    (found,) = detect(image, (8, 9.0), where=where)
-    assert len(found) > 10
-    assert found[:, [0, 2]].min(axis=1).max() <= 300
 
 
 def turned_deg(angle: float) -> manhattan.Manhattan:
