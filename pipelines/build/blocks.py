@@ -11,12 +11,12 @@ import pyarrow as pa
 from apache_beam import pvalue
 
 from nostalgin_core import block, model
-from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
 from nostalgin_core.block import Settled
-from pipelines.store import tables
+from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
 from pipelines.build.attempt import Attempt
-from pipelines.index.plan import BlockTask
 from pipelines.build.stages import Bench, FacadeRef, Work, named
+from pipelines.index.plan import BlockTask
+from pipelines.store import tables
 
 MODEL: Final = pa.schema(
     [

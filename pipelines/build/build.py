@@ -15,18 +15,17 @@ from apache_beam.options.pipeline_options import PipelineOptions
 from apache_beam.runners.runner import PipelineResult
 
 from nostalgin_core.records import Rejection
-from pipelines.index import manifest
+from pipelines import site
 from pipelines.build import rows
 from pipelines.build.city import Built, city
-from pipelines.index.manifest import Manifest, Unusable
-from pipelines.models import NETWORKS, Models, one_thread
 from pipelines.build.options import CityOptions, part
-from pipelines.index.plan import Plan, plan
-from pipelines import site
 from pipelines.build.rows import WriteTable
 from pipelines.build.stages import Bench
+from pipelines.index import manifest
+from pipelines.index.manifest import Manifest, Unusable
+from pipelines.index.plan import Plan, plan
+from pipelines.models import NETWORKS, Models, one_thread
 from pipelines.store import Store, Unstored, Versions, runs
-
 
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage

@@ -15,7 +15,6 @@ import apache_beam as beam
 from apache_beam import pvalue
 
 from pipelines.build.blocks import Assign, Model
-from pipelines.index.plan import Plan
 from pipelines.build.stages import (
     Bench,
     FacadeRef,
@@ -26,6 +25,7 @@ from pipelines.build.stages import (
     Segment,
     Thumbnail,
 )
+from pipelines.index.plan import Plan
 
 
 class Built(NamedTuple):

@@ -17,14 +17,12 @@ from apache_beam import pvalue
 from nostalgin_core import inpaint, matte, photo, quantise, rectify, segment
 from nostalgin_core.records import Elevation, Instance, Photo, Rejection, Seen
 from nostalgin_core.steps import rounded
-from pipelines.build import artifacts
 from pipelines import site
-from pipelines.store import tables
+from pipelines.build import artifacts
 from pipelines.build.attempt import Attempt
 from pipelines.index.plan import PhotoRef
 from pipelines.models import Models, Once
-from pipelines.store import Store
-from pipelines.store import Versions
+from pipelines.store import Store, Versions, tables
 
 
 @dataclass(frozen=True)

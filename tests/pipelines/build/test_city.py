@@ -9,18 +9,16 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
-from rich.console import Console
 
 from nostalgin_core import reconstruct
 from nostalgin_core.steps import Networks
-from pipelines.index import manifest
 from pipelines.build.build import Lost, Report, build
-from pipelines.models import Models
 from pipelines.build.options import options
+from pipelines.index import manifest
+from pipelines.models import Models
 from pipelines.site.publish import publish
 from pipelines.store.store import Store
-from pipelines.store.versions import versions
-from pipelines.console.voice import Voice
+from pipelines.store.versions import Versions
 from tests.pipelines import painted
 
 TWO_PROCESSES = ("--direct_num_workers=2",)
@@ -144,7 +142,7 @@ def test_the_site_shows_the_title_or_the_folder_s_name(
     models = Models(str(city.parent / "models"))
     rows = manifest.read(store).rows
     run = (other / "CURRENT").read_text().strip()
-    publish(store, run, versions(models), rows, title=title)
+    publish(store, run, Versions.present(models), rows, title=title)
     record = json.loads((other / "site" / "site.json").read_text())
     assert record["title"] == (shown or "Main street")
 
@@ -158,7 +156,7 @@ def test_each_photo_is_credited_to_whom_its_own_row_names(
     rows = manifest.read(store).rows
     rows = [replace(row, credit=f"Archive of {row.photo}") for row in rows]
     run = (other / "CURRENT").read_text().strip()
-    publish(store, run, versions(Models(str(city.parent / "models"))), rows)
+    publish(store, run, Versions.present(Models(str(city.parent / "models"))), rows)
     record = json.loads((other / "site" / "site.json").read_text())
     photos = [p for b in record["blocks"] for h in b["buildings"] for p in h["photos"]]
     assert len(photos) >= 4
