@@ -55,10 +55,22 @@ class _Side:
     stop: float  # share of the extent that is looked at
 
 
+def _as_it_is(image: np.ndarray) -> np.ndarray:
+    return image
+
+
+def _mirrored(image: np.ndarray) -> np.ndarray:
+    return image[:, ::-1]
+
+
+def _on_its_side(image: np.ndarray) -> np.ndarray:
+    return image.T
+
+
 SIDES: Final = (
-    _Side(lambda a: a, 1, FOOT),
-    _Side(lambda a: a[:, ::-1], 1, FOOT),
-    _Side(lambda a: a.T, 0, 1.0),
+    _Side(_as_it_is, 1, FOOT),
+    _Side(_mirrored, 1, FOOT),
+    _Side(_on_its_side, 0, 1.0),
 )
 
 

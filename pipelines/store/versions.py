@@ -9,6 +9,7 @@ room hands on, and of all modules of the core that these use, so that a changed 
 can't be forgotten.
 """
 
+import dataclasses
 import inspect
 import json
 import sys
@@ -20,6 +21,7 @@ from typing import Any, Final, Self
 
 from nostalgin_core import block, inpaint, matte, model, photo, rectify, segment
 from pipelines.models import NETWORKS, Models
+from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
@@ -39,7 +41,6 @@ ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
     "thumbnail": (photo,),
 }
 CORE: Final = "nostalgin_core."
-PLAIN: Final = (bool, int, float, str, tuple)
 COUNTED: Final = ("segment", "matte", "rectify", "inpaint", "block")
 
 
@@ -79,20 +80,31 @@ def parameters(*modules: ModuleType) -> str:
     told = []
     for module in family(*modules):
         for name, one in sorted(told_of(module).items()):
-            if inspect.isfunction(one) and one.__module__ == module.__name__:
-                told += [[name, *default] for default in defaults(one)]
-            elif name.isupper() and isinstance(one, PLAIN):
-                told.append([module.__name__, name, repr(one)])
+            own = origin(one) == module.__name__
+            if own and (inspect.isfunction(one) or inspect.isclass(one)):
+                told += [[module.__name__, name, *each] for each in defaults(one)]
+            elif name.isupper():
+                told.append([module.__name__, name, stable(one)])
     return json.dumps(told)
 
 
-def defaults(function: Callable[..., Any]) -> list[list[str]]:
-    """List the defaults in a signature."""
-    return [
-        [name, repr(one.default)]
-        for name, one in inspect.signature(function).parameters.items()
-        if one.default is not inspect.Parameter.empty
-    ]
+def defaults(one: Callable[..., Any]) -> list[list[str]]:
+    """List the defaults in the signature of a function, or of a record."""
+    if inspect.isfunction(one):
+        given = inspect.signature(one).parameters.values()
+        told = [(each.name, each.default) for each in given]
+    elif dataclasses.is_dataclass(one):
+        fields = dataclasses.fields(one)
+        told = [(each.name, each.default) for each in fields]
+        told += [(each.name, each.default_factory) for each in fields]
+    else:
+        told = []
+    none = {id(inspect.Parameter.empty), id(dataclasses.MISSING)}
+    return [[name, stable(each)] for name, each in told if id(each) not in none]
+
+
+# Made as the module is loaded, so that a value without a stable text is told at once.
+PARAMETERS: Final = {stage: parameters(*rooms) for stage, rooms in ROOMS.items()}
 
 
 def version(stage: str, models: Models) -> str:
@@ -102,7 +114,7 @@ def version(stage: str, models: Models) -> str:
         Unlocked: if the stage's network has no lock.
     """
     network = models.sha256(stage) if stage in NETWORKS else ""
-    return f"{CODE[stage]}-{key_of(parameters(*ROOMS[stage]), network)[:8]}"
+    return f"{CODE[stage]}-{key_of(PARAMETERS[stage], network)[:8]}"
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from pipelines.cli import app
+from tests.data import ROOT
 from tests.pipelines import painted
 
 
@@ -50,6 +52,26 @@ def test_what_is_missing_is_named_with_the_remedy(
     assert result.exit_code == 1
     assert message in result.output
     assert "Traceback" not in result.output
+
+
+def test_a_second_build_in_a_fresh_process_makes_nothing(tmp_path: Path) -> None:
+    city = painted.write_city(tmp_path)
+    models = ["--models", str(tmp_path / "models")]
+    kept = []
+    for seed in ("1", "2"):
+        done = subprocess.run(
+            [sys.executable, "-m", "pipelines.cli", "build", str(city), *models],
+            cwd=ROOT,
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        files = sorted((city / "artifacts").rglob("*.parquet"))
+        kept.append([(file, file.stat().st_mtime_ns) for file in files])
+    assert kept[0]
+    assert kept[1] == kept[0]
 
 
 def test_an_unreadable_photo_ends_with_1_and_without_a_traceback(
