@@ -6,17 +6,18 @@ Facts that a reader of the file needs lie inside it, as metadata.
 """
 
 import argparse
+import hashlib
 import io
 import warnings
 from pathlib import Path
 
 import numpy as np
-import onnxruntime
 import torch
 from torch import Tensor, nn
 
 from export.inpainter import MULTIPLE, Generator
 from export.shipping import lock, shipped
+from nostalgin_core import session
 
 STRIPS = 8  # of the attention: its score map is an eighth of the whole one
 TOLERANCE = 2e-2  # of the range -1 to 1: what float16 weights cost, about 1 gray level
@@ -61,16 +62,9 @@ def export(
     return shipped(written.getvalue(), facts={"multiple": str(MULTIPLE), **facts})
 
 
-def session(data: bytes) -> onnxruntime.InferenceSession:
-    """Open a model on one thread."""
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = 1
-    return onnxruntime.InferenceSession(data, options, ["CPUExecutionProvider"])
-
-
 def parity(generator: Generator, data: bytes, shapes: list[tuple[int, int]]) -> float:
     """Give the largest difference between torch and ONNX Runtime over some sizes."""
-    opened = session(data)
+    opened = session.load(data, hashlib.sha256(data).hexdigest())
     worst = 0.0
     rng = np.random.default_rng(0)
     for h, w in shapes:
@@ -78,7 +72,7 @@ def parity(generator: Generator, data: bytes, shapes: list[tuple[int, int]]) -> 
         hole = np.zeros((1, 1, h, w), np.float32)
         hole[..., h // 3 : h // 2, w // 4 : w // 2] = 1
         guess = image * (1 - hole) + guess * hole
-        (ours,) = opened.run(None, {"image": image, "hole": hole, "guess": guess})
+        (ours,) = opened(image, hole, guess)
         with torch.no_grad():
             theirs = generator(*map(torch.from_numpy, (image, hole, guess)))[1].numpy()
         worst = max(worst, float(np.abs(ours - theirs).max()))

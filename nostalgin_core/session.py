@@ -5,9 +5,14 @@ swapped or cut short would otherwise answer, and answer wrongly.
 """
 
 import hashlib
+import os
 from collections.abc import Callable
 
 import numpy as np
+
+# As it is loaded, onnxruntime makes a device id in the user's cache, and soon it looks
+# for its vendor's host. `disable_telemetry_events` comes too late for both.
+os.environ["ORT_DISABLE_TELEMETRY"] = "1"
 import onnxruntime
 
 Session = Callable[..., tuple[np.ndarray, ...]]

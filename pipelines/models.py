@@ -113,7 +113,9 @@ def reader() -> Callable[..., Any]:
     the package's default, 736 px for the shorter side, costs ten times as much.
     """
     import numpy as np
-    from rapidocr_onnxruntime import RapidOCR
+
+    import nostalgin_core.session  # noqa: F401 - it keeps onnxruntime's telemetry off
+    from rapidocr_onnxruntime import RapidOCR  # isort: skip
 
     engine = RapidOCR(
         intra_op_num_threads=1,

@@ -11,12 +11,12 @@ from functools import partial
 from typing import Any
 
 import apache_beam as beam
-from apache_beam.options.pipeline_options import PipelineOptions
+from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
 from apache_beam.runners.runner import PipelineResult
 
 from nostalgin_core.records import Rejection
 from pipelines import site
-from pipelines.build import rows
+from pipelines.build import embedded, rows
 from pipelines.build.city import Built, city
 from pipelines.build.options import CityOptions, part
 from pipelines.build.rows import WriteTable
@@ -140,11 +140,14 @@ def launched(
         Lost: if what was made could not be kept.
     """
     known = Plan(todo.photos, todo.blocks, (*found.rejections, *todo.rejections))
-    pipeline = beam.Pipeline(options=options)
+    own = embedded.runner(options)
+    pipeline = beam.Pipeline(own, options=options)
     write(city(pipeline, known, bench), bench, run)
+    near = options.view_as(StandardOptions).runner == embedded.EMBEDDED
     try:
-        result = pipeline.run()
-        result.wait_until_finish()
+        with embedded.on_loopback() if near else nullcontext():
+            result = pipeline.run()
+            result.wait_until_finish()
     except Unstored as problem:
         raise Lost(unstored(bench.store, str(problem))) from problem
     except RuntimeError as problem:  # a worker's exception reaches us as its traceback

@@ -11,8 +11,9 @@ from apache_beam.options.pipeline_options import (
 )
 from apache_beam.runners.runner import create_runner
 
+from pipelines.build.embedded import EMBEDDED
+
 OURS: Final = ("--city", "--models", "--shard")
-EMBEDDED: Final = "FnApiRunner"  # Beam's own runner in this process
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
 
@@ -32,12 +33,9 @@ def options(
 ) -> PipelineOptions:
     """Gather options, with the embedded runner for `DirectRunner` and for none.
 
-    More than one worker means processes, not threads: the time between calls of ONNX
-    Runtime, OpenCV and NumPy is Python's own.
-
     Raises:
         ValueError: if the shard is not k/n with 1 <= k <= n, if there is no such
-            runner, or if nobody knows one of Beam's options.
+            runner, if nobody knows one of Beam's options, or for less than no workers.
     """
     part(shard)
     ours = dict(zip(OURS, (city, models, shard), strict=True))
@@ -49,11 +47,11 @@ def options(
     if standard.runner in ALIASES:
         standard.runner = EMBEDDED
     known(standard.runner or EMBEDDED, beam)
-    direct = found.view_as(DirectOptions)
-    several = (direct.direct_num_workers or 1) != 1
-    named = any(one.startswith("--direct_running_mode") for one in beam)
-    if several and not named:
-        direct.direct_running_mode = "multi_processing"
+    workers = found.view_as(DirectOptions).direct_num_workers
+    if workers < 0:
+        raise ValueError(
+            f"--direct_num_workers={workers}: give a count, or 0 for one on each core"
+        )
     return found
 
 

@@ -111,6 +111,7 @@ def test_another_runner_is_left_alone() -> None:
         (["--city=elsewhere"], "this command sets it"),
         (["--runner=NoSuchRunner"], "NoSuchRunner"),
         (["--runner=no.such.Runner"], "no.such.Runner"),
+        (["--direct_num_workers=-1"], "0 for one on each core"),
     ],
 )
 def test_options_that_nobody_knows_are_refused(beam: list[str], words: str) -> None:
@@ -120,12 +121,3 @@ def test_options_that_nobody_knows_are_refused(beam: list[str], words: str) -> N
 
 def test_a_cluster_s_runner_may_know_more_options() -> None:
     options("city", beam=["--runner=FlinkRunner", "--checkpointing_interval=9"])
-
-
-def test_several_workers_are_processes_unless_told_otherwise() -> None:
-    several = ["--direct_num_workers=2"]
-    mode = "direct_running_mode"
-    made = options("city", beam=several)
-    assert made.get_all_options()[mode] == "multi_processing"
-    threads = [*several, f"--{mode}=multi_threading"]
-    assert options("city", beam=threads).get_all_options()[mode] == ("multi_threading")

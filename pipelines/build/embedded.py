@@ -1,0 +1,70 @@
+"""Beam's embedded runner: any interpreter starts its workers, no stranger reaches them.
+
+Beam starts its workers by a command that a shell reads, in which a blank in the
+interpreter's path ends it; and it opens the ports that they call at on every interface
+of the machine, to whoever comes. Both are set right here.
+"""
+
+import contextlib
+import shlex
+import sys
+from collections.abc import Iterator
+from typing import Any, Final
+from unittest import mock
+
+import grpc
+from apache_beam.options.pipeline_options import (
+    DirectOptions,
+    PipelineOptions,
+    StandardOptions,
+)
+from apache_beam.runners.portability.fn_api_runner.fn_runner import FnApiRunner
+from apache_beam.transforms.environments import SubprocessSDKEnvironment
+
+EMBEDDED: Final = "FnApiRunner"
+WORKER: Final = "apache_beam.runners.worker.sdk_worker_main"
+EVERYWHERE: Final = "[::]:"
+HERE: Final = "localhost:"  # as the workers are told to call
+
+
+def runner(options: PipelineOptions) -> FnApiRunner | None:
+    """Make the embedded runner where several processes are asked of it.
+
+    Otherwise, and for other runners, None: Beam makes them from the options. More than
+    one worker means processes, not threads: the time between calls of ONNX Runtime,
+    OpenCV and NumPy is Python's own.
+    """
+    direct = options.view_as(DirectOptions)
+    several = (direct.direct_num_workers or 1) != 1
+    threads = direct.direct_running_mode == "multi_threading"
+    if options.view_as(StandardOptions).runner != EMBEDDED or threads or not several:
+        return None
+    direct.direct_running_mode = "in_memory"  # or else Beam takes its own command
+    workers = SubprocessSDKEnvironment.from_command_string(command())
+    return FnApiRunner(default_environment=workers)
+
+
+def command() -> str:
+    """Write what a shell is to start as a worker."""
+    return f"{shlex.quote(sys.executable)} -m {WORKER}"
+
+
+@contextlib.contextmanager
+def on_loopback() -> Iterator[None]:
+    """Keep all ports that are opened meanwhile to this machine."""
+    made = grpc.server
+
+    def server(*args: Any, **options: Any) -> grpc.Server:
+        one = made(*args, **options)
+        opened = one.add_insecure_port
+
+        def here(address: str) -> int:
+            if address.startswith(EVERYWHERE):
+                address = f"{HERE}{address.removeprefix(EVERYWHERE)}"
+            return opened(address)
+
+        one.add_insecure_port = here
+        return one
+
+    with mock.patch.object(grpc, "server", server):
+        yield
