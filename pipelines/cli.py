@@ -114,6 +114,9 @@ def index_command(
     title: Annotated[
         str, typer.Option(help="The city's name on its page; else its folder's.")
     ] = "",
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace a mended manifest; a copy is kept.")
+    ] = False,
     json_lines: JsonLines = False,
 ) -> None:
     """Write a city folder's manifest: which photo shows which fronts, in what order.
@@ -126,7 +129,13 @@ def index_command(
     voice = Voice(errors, machine=json_lines)
     try:
         made = index.index(
-            photos, catalogue, city, blocks=block or (), credit=credit, title=title
+            photos,
+            catalogue,
+            city,
+            blocks=block or (),
+            credit=credit,
+            title=title,
+            force=force,
         )
     except index.Nothing as problem:
         raise fail(str(problem)) from problem
@@ -246,7 +255,8 @@ def demo_command(
     told(str(folder), beam=beam)  # a mistyped option is told before anything is painted
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
-        index.index(photos, listed, str(folder), credit=CREDIT, title=TITLE)
+        named = {"credit": CREDIT, "title": TITLE}
+        index.index(photos, listed, str(folder), force=True, **named)
     except OSError as problem:
         raise unwritable(folder, problem) from problem
     built(str(folder), voice, beam=beam)

@@ -37,12 +37,12 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     from pipelines import build
     from pipelines.index.manifest import Unusable
     from pipelines.models import Unlocked
-    from pipelines.site import ViewerMissingError
+    from pipelines.site import Foreign, ViewerMissingError
 
     try:
         with hushed(errors):
             report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
-    except (Unusable, Unlocked, build.Lost, ViewerMissingError) as problem:
+    except (Unusable, Unlocked, build.Lost, Foreign, ViewerMissingError) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem

@@ -85,6 +85,7 @@ def build(
 
     Raises:
         Unusable: if the manifest can't be read, or names no front.
+        Foreign: if the folder for the site holds what another wrote.
         Lost: if a runner lost work, or what it made could not be kept.
     """
     one_thread()
@@ -100,6 +101,7 @@ def build(
     todo = plan(found.rows, city=ours.city, shard=shard)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
+    site.claim(store)  # whose folder it is, too, is told now
     run = runs.run_id(found.sha256, bench.versions, ours.shard)
     tell(
         "start",

@@ -19,6 +19,7 @@ from pipelines.store import Store, textual
 SUFFIXES: Final = (
     ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
 )
+WRITTEN: Final = ("site", "artifacts", "runs")  # by build, in the city folder
 LONGEST: Final = 48  # letters of a folder that names a block
 # 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
 BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
@@ -49,16 +50,26 @@ def index(
     blocks: Sequence[str] = (),
     credit: str = "",
     title: str = "",
+    force: bool = False,
 ) -> Indexed:
     """Write a city folder's manifest; without a `title` its folder's name is shown.
 
     Without a catalogue the file names tell block and lot; where they don't, the photos
-    of a folder stand in one row, in the order of their names.
+    of a folder stand in one row, in the order of their names. A manifest that people
+    have mended is replaced by `force` alone, and a copy of it is kept.
 
     Raises:
-        Nothing: if there are no photos, or no row of the catalogue makes sense.
+        Nothing: if there are no photos, no row of the catalogue makes sense, or a
+            mended manifest would be lost.
     """
-    names, unnamed = spelt(images(photos))
+    store = Store(city)
+    mended = manifest.mended_by_hand(store)
+    if mended is not None and not force:
+        raise Nothing(
+            f"{city}/{manifest.CSV} was mended by hand: with --force it is replaced "
+            "and a copy is kept, or name another folder"
+        )
+    names, unnamed = spelt(images(photos, city))
     read = from_names(names, photos) if listed is None else from_csv(listed)
     wanted = [e for e in read.entries if not blocks or e.block in blocks]
     if not wanted:
@@ -77,7 +88,8 @@ def index(
         )
         for photo, front in rows
     ]
-    manifest.write(Store(city), cells, title=cleaned(title))
+    kept = [] if mended is None else [manifest.keep_copy(store, mended)]
+    manifest.write(store, cells, title=cleaned(title))
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
         fronts=len(fronts),
@@ -85,7 +97,11 @@ def index(
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
         rejections=(*unnamed, *read.rejections, *(strangers if not blocks else ())),
-        warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts),
+        warnings=(
+            *about(read.warnings, {e.row for e in wanted}),
+            *doubts,
+            *(f"{name} keeps the manifest that was mended by hand" for name in kept),
+        ),
     )
 
 
@@ -100,21 +116,32 @@ def first_credit(entries: Sequence[Entry]) -> str:
     return next((entry.credit for entry in entries if entry.credit), "")
 
 
-def images(folder: Path) -> list[str]:
+def images(folder: Path, city: str) -> list[str]:
     """List the images below a folder, by their paths relative to it.
 
+    What lies in the city folder is none of them, if that is inside.
+
     Raises:
-        Nothing: if there is no such folder, or no image in it.
+        Nothing: if there is no such folder, or no image in it, or if it is one that
+            `build` writes to.
     """
     if not folder.is_dir():
         raise Nothing(f"{folder} is no folder: name the folder that holds the photos")
     if not textual(os.path.abspath(folder)):  # noqa: PTH100 - a link stays a link
         shown = os.fsencode(folder).decode(errors="backslashreplace")
         raise Nothing(f"{shown}: a folder's name is not UTF-8; rename it")
+    own, here = Path(city).resolve(), folder.resolve()
+    outputs = [own / name for name in WRITTEN]
+    if any(here.is_relative_to(output) for output in outputs):
+        raise Nothing(f"{folder} is where build writes: move the photos elsewhere")
+    if own != here and own.is_relative_to(here):
+        outputs = [own]
     found = sorted(
-        path.relative_to(folder).as_posix()
-        for path in folder.rglob("*")
-        if path.suffix.casefold() in SUFFIXES and path.is_file()
+        path.relative_to(here).as_posix()
+        for path in here.rglob("*")
+        if path.suffix.casefold() in SUFFIXES
+        and path.is_file()
+        and not any(path.is_relative_to(output) for output in outputs)
     )
     if not found:
         raise Nothing(f"{folder} holds no image ({', '.join(SUFFIXES)})")

@@ -9,6 +9,7 @@ are documented in `docs/manifest.md`; columns that are not known are kept.
 import dataclasses
 import hashlib
 import io
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
@@ -26,6 +27,7 @@ PARQUET: Final = "manifest.parquet"
 CSV: Final = "manifest.csv"
 CSV_HASH: Final = b"nostalgin.csv_sha256"
 TITLE: Final = b"nostalgin.title"
+MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
 PHOTO: Final = pa.schema(
     [
         pa.field("root", pa.string()),  # folder that `photo` is relative to
@@ -81,7 +83,9 @@ def row_of(
     return {"root": root, "photo": photo, "credit": credit} | cells
 
 
-def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
+def write(
+    store: Store, rows: list[dict[str, Any]], *, title: str = "", mended: bool = False
+) -> None:
     """Write the manifest in both forms, in the order of block, ring, rank and photo."""
     known = SCHEMA.names
     others = sorted({name for row in rows for name in row} - set(known))
@@ -92,6 +96,8 @@ def write(store: Store, rows: list[dict[str, Any]], *, title: str = "") -> None:
     mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
     if title:
         mark[TITLE] = title.encode()
+    if mended:
+        mark[MENDED] = b"yes"
     store.write_bytes(CSV, text)
     store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
 
@@ -105,8 +111,31 @@ def rewrite(store: Store, found: Manifest) -> Manifest:
     """
     if not found.mended or found.rejections:
         return found
-    write(store, [typed(row) for row in found.rows], title=found.title)
+    rows = [typed(row) for row in found.rows]
+    write(store, rows, title=found.title, mended=True)
     return read(store)
+
+
+def mended_by_hand(store: Store) -> bytes | None:
+    """Read the CSV if people have written in it, now or before an earlier build."""
+    csv, parquet = optional(store, CSV), optional(store, PARQUET)
+    if csv is None or parquet is None:
+        return csv
+    try:
+        told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
+    except (pa.ArrowInvalid, OSError):  # whatever it told is lost
+        return csv
+    same = told.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
+    return None if same and MENDED not in told else csv
+
+
+def keep_copy(store: Store, csv: bytes) -> str:
+    """Keep a manifest under the day and time of now, and tell its name."""
+    stem = f"manifest.{time.strftime('%Y-%m-%dT%H%M%SZ', time.gmtime())}"
+    names = (f"{stem}{more}.csv" for more in ("", *(f".{n}" for n in range(2, 100))))
+    name = next(name for name in names if not store.exists(name))
+    store.write_bytes(name, csv)
+    return name
 
 
 def typed(row: Row) -> dict[str, Any]:

@@ -4,8 +4,9 @@ In: a run's tables and models. Out: `CITY/site`, and the pointer to the run.
 Open `publish` first.
 """
 
-from pipelines.site.publish import publish
+from pipelines.site.folder import Foreign
+from pipelines.site.publish import claim, publish
 from pipelines.site.record import record
 from pipelines.site.site import ViewerMissingError, thumbnail
 
-__all__ = ["ViewerMissingError", "publish", "record", "thumbnail"]
+__all__ = ["Foreign", "ViewerMissingError", "claim", "publish", "record", "thumbnail"]

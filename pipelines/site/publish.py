@@ -14,10 +14,21 @@ from pipelines.index import cleaned, of_folder
 from pipelines.index.manifest import Row, natural
 from pipelines.index.plan import rooted
 from pipelines.site import site
+from pipelines.site.folder import written
 from pipelines.store import Store, Versions, runs
 
 CURRENT: Final = "CURRENT"
 SITE: Final = "site"
+
+
+def claim(store: Store) -> None:
+    """Insist that a run's site can be written, before there is anything to write.
+
+    Raises:
+        Foreign: if the folder where it would lie is not our own.
+    """
+    if "://" not in store.root:
+        written(Path(store.root) / SITE)
 
 
 def publish(

@@ -8,17 +8,14 @@
 
 Files that others name come first and the tileset last, each written beside its place
 and moved into it, so that a reader never meets half a city. What an earlier city left
-behind is removed at the end.
+behind is removed at the end, and nothing that we did not write (`folder`).
 """
 
-import errno
 import hashlib
 import io
 import json
-import os
 import re
-import shutil
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -28,10 +25,13 @@ from PIL import Image
 from nostalgin_core import city
 from nostalgin_core.arrays import Gray
 from nostalgin_core.model import legend
+from pipelines.site.folder import Folder
 
 VIEWER: Final = Path(__file__).with_name("viewer_dist")
 THUMBNAIL_PX: Final = 1000  # a panel is 370 px wide, on screens of up to 2.7 px a point
 SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
+
+PAGES: Final = ("index.html", "site.json", "tileset.json")
 
 Json = dict[str, Any]
 
@@ -80,6 +80,7 @@ def assemble(
 
     Raises:
         ViewerMissingError: if the viewer was not built.
+        Foreign: if `destination` or a file in the way is not our own.
         ValueError: if there is no block, or two have the same name.
     """
     names = [block.name for block in blocks]
@@ -99,9 +100,10 @@ def assemble(
         "legend": legend(),
         "blocks": [_block(uri, one, files) for uri, one in models.items()],
     }
-    site = Folder(destination)
-    for path in sorted((viewer / "assets").iterdir()):
-        site.write(f"assets/{path.name}", path.read_bytes())
+    assets = {f"assets/{p.name}": p for p in sorted((viewer / "assets").iterdir())}
+    site = Folder(destination, [*assets, *files.values(), *models, *PAGES])
+    for name, path in assets.items():
+        site.write(name, path.read_bytes())
     for key, data in photos.items():
         site.write(files[key], data)
     for uri, one in models.items():
@@ -109,7 +111,7 @@ def assemble(
     site.write("index.html", index.read_bytes())
     site.write("site.json", _text(record))
     site.write("tileset.json", _text(city.tileset(tiles, place=place)))
-    site.prune(("assets", "blocks", "photos"))
+    site.prune()
 
 
 def thumbnail(image: Gray, *, longest_px: int = THUMBNAIL_PX) -> bytes:
@@ -165,43 +167,3 @@ def _photo(photo: Mapping[str, Any], files: Mapping[str, str]) -> Json:
 
 def _text(value: Json) -> bytes:
     return json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
-
-
-class Folder:
-    """A folder that is written file by file, each whole or not at all."""
-
-    def __init__(self, root: Path) -> None:
-        """Make the folder where it is missing."""
-        root.mkdir(parents=True, exist_ok=True)
-        self.root = root.resolve()
-        self.written: set[str] = set()
-
-    def write(self, name: str, data: bytes) -> None:
-        """Put a file in its place in one move; one that is already the same stays.
-
-        Raises:
-            OSError: if it can't be written there, or a link leads out of the folder.
-        """
-        path = self.root / name
-        path.parent.mkdir(exist_ok=True)
-        if not path.parent.resolve().is_relative_to(self.root):
-            raise OSError(
-                errno.ELOOP, f"{name} leads out of the site: remove that link"
-            )
-        self.written.add(name)
-        if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
-            return
-        beside = path.with_name(f".{path.name}.{os.getpid()}")
-        beside.write_bytes(data)
-        beside.replace(path)
-
-    def prune(self, folders: Iterable[str]) -> None:
-        """Remove what an earlier city left in these folders."""
-        for folder in folders:
-            for path in sorted((self.root / folder).glob("*")):
-                if f"{folder}/{path.name}" in self.written:
-                    continue
-                if path.is_dir() and not path.is_symlink():
-                    shutil.rmtree(path)
-                else:
-                    path.unlink()

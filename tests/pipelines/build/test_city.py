@@ -16,6 +16,7 @@ from pipelines.build.build import Lost, Report, build
 from pipelines.build.options import options
 from pipelines.index import manifest
 from pipelines.models import Models
+from pipelines.site.folder import Foreign
 from pipelines.site.publish import publish
 from pipelines.store.store import Store
 from pipelines.store.versions import Versions
@@ -214,6 +215,18 @@ def test_a_folder_that_takes_no_artifacts_fails_the_run_and_blames_no_photo(
     with pytest.raises(Lost, match=r"takes no more artifacts.*artifacts/matte"):
         built(other, [f"--direct_num_workers={workers}"])
     assert not (other / "CURRENT").exists()
+
+
+def test_a_site_of_another_is_told_before_the_work_and_stays_as_it_is(
+    city: Path, tmp_path: Path
+) -> None:
+    other = copied(city, tmp_path)
+    (other / "site/photos").mkdir(parents=True)
+    (other / "site/photos/original.jpg").write_text("mine")
+    before = tree(other)
+    with pytest.raises(Foreign, match="move them elsewhere"):
+        built(other)
+    assert tree(other) == before
 
 
 def test_clock_times_stand_in_one_file_alone(city: Path) -> None:

@@ -11,6 +11,7 @@ from nostalgin_core import evidence
 from nostalgin_core.model import atlas, picture
 from nostalgin_core.records import Assignment, Block, Building, Front, Seen, Wall
 from pipelines.site import site
+from pipelines.site.folder import RECORD, Folder, Foreign
 from pipelines.site.record import record as recorded
 
 WEBP = site.thumbnail(np.zeros((40, 30), np.uint8))
@@ -73,9 +74,9 @@ def test_the_tileset_is_swapped_in_last(
     tmp_path: Path, viewer: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     order = []
-    write = site.Folder.write
+    write = Folder.write
     monkeypatch.setattr(
-        site.Folder,
+        Folder,
         "write",
         lambda self, name, data: order.append(name) or write(self, name, data),
     )
@@ -128,7 +129,8 @@ def test_a_link_that_leads_out_is_refused(tmp_path: Path, viewer: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "site").mkdir()
     (tmp_path / "site/blocks").symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(OSError, match="leads out"):
+    (tmp_path / "site" / RECORD).write_text("[]")
+    with pytest.raises(Foreign, match="leads out"):
         assembled(tmp_path / "site", viewer, model())
     assert list((tmp_path / "elsewhere").iterdir()) == []
 

@@ -1,0 +1,115 @@
+"""A folder that this program writes, and removes from only what it wrote itself.
+
+    SITE/.nostalgin.json        the names of all files that were written, relative
+
+The record is written before the files that it names, so that a publishing which was cut
+off is known as our own the next time. What it does not name is a stranger's: it is
+neither changed nor removed, and where it stands in the way nothing is written at all.
+"""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path, PurePosixPath
+from typing import Final
+
+RECORD: Final = ".nostalgin.json"
+
+
+class Foreign(ValueError):  # noqa: N818 - it reads as what it is about
+    """A folder or a file that another wrote, with what to do about it."""
+
+
+def written(root: Path) -> frozenset[str]:
+    """Read which files in a folder are ours; none where it is missing or empty.
+
+    Raises:
+        Foreign: if it is a link or no folder, or holds files but no record of ours.
+    """
+    if root.is_symlink():
+        raise Foreign(f"{root} is a link: remove it, and a folder will be made")
+    if not root.exists() or (root.is_dir() and not any(root.iterdir())):
+        return frozenset()
+    try:
+        names = json.loads((root / RECORD).read_bytes())
+    except (OSError, ValueError):
+        names = None
+    if not isinstance(names, list) or not all(map(inside, names)):
+        raise Foreign(
+            f"{root} holds files of which no record says that nostalgin wrote them: "
+            "move them elsewhere, and build again"
+        )
+    return frozenset(names)
+
+
+def inside(name: object) -> bool:
+    """Tell whether a name is a path that can't lead out of a folder."""
+    if not isinstance(name, str) or "\0" in name:
+        return False
+    path = PurePosixPath(name)
+    return bool(path.parts) and not path.is_absolute() and ".." not in path.parts
+
+
+class Folder:
+    """A folder that is written file by file, each whole or not at all."""
+
+    def __init__(self, root: Path, names: Iterable[str]) -> None:
+        """Take a folder in which these files, and no others, are to stand.
+
+        Raises:
+            Foreign: if it is another's, or another's file or link stands in their way.
+        """
+        self._root, self._names = root, frozenset(names)
+        self._before = written(root)
+        for name in sorted(self._names):
+            self._free(name)
+        root.mkdir(parents=True, exist_ok=True)
+        self._record(self._before | self._names)
+
+    def write(self, name: str, data: bytes) -> None:
+        """Put a file in its place in one move; one that is already the same stays.
+
+        Raises:
+            OSError: if it can't be written there.
+            KeyError: if the file was not announced.
+        """
+        if name not in self._names:
+            raise KeyError(name)
+        self._put(name, data)
+
+    def prune(self) -> None:
+        """Remove what we wrote earlier and not this time."""
+        for name in sorted(self._before | self._names):
+            path = self._root / name
+            if any(part.is_symlink() for part in (path, *self._folders(name))):
+                continue
+            partial(path).unlink(missing_ok=True)
+            if name not in self._names and path.is_file():
+                path.unlink()
+        self._record(self._names)
+
+    def _free(self, name: str) -> None:
+        for folder in self._folders(name):
+            if folder.is_symlink():
+                raise Foreign(f"{folder} is a link, it leads out: remove it")
+        path = self._root / name
+        if name not in self._before and (path.exists() or path.is_symlink()):
+            raise Foreign(f"{path} is another's: move it elsewhere, and build again")
+
+    def _folders(self, name: str) -> list[Path]:
+        return [self._root / one for one in PurePosixPath(name).parents]
+
+    def _record(self, names: Iterable[str]) -> None:
+        self._put(RECORD, json.dumps(sorted(names), indent=0).encode())
+
+    def _put(self, name: str, data: bytes) -> None:
+        path = self._root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
+            return
+        partial(path).write_bytes(data)
+        partial(path).replace(path)
+
+
+def partial(path: Path) -> Path:
+    """Name the file that is written beside a path, and then moved into it."""
+    return path.with_name(f".{path.name}.partial")
