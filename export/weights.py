@@ -12,6 +12,8 @@ import onnx
 import torch
 from onnx import numpy_helper
 
+GENERATOR = "generator."  # begins the names of the inpainter's weights
+PARTS = ("backbone", "rpn", "roi_heads", GENERATOR)  # what else is named was folded
 CAST = "|half"  # ends the names of weights that an ONNX file stores in half precision
 
 
@@ -56,5 +58,4 @@ def weights_of(model: onnx.ModelProto) -> dict[str, np.ndarray]:
     """Read the named weights of an exported network, in the precision kept."""
     arrays = {w.name: numpy_helper.to_array(w) for w in model.graph.initializer}
     named = {name.removesuffix(CAST): array for name, array in arrays.items()}
-    parts = ("backbone", "rpn", "roi_heads")
-    return {name: a for name, a in named.items() if name.startswith(parts)}
+    return {name: a for name, a in named.items() if name.startswith(PARTS)}

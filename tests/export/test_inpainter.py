@@ -1,10 +1,13 @@
+from pathlib import Path
+
 import onnx
 import pytest
 import torch
 
 from export.attention import Attention, decide, paste, patches
 from export.inpainter import Critic, Generator
-from export.inpainter_onnx import export, parity
+from export.inpainter_onnx import TOLERANCE, export, parity
+from export.train_inpainter import begin
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +97,21 @@ def test_even_kernels_are_refused() -> None:
 def test_the_critic_judges_every_patch() -> None:
     image, hole, _ = question(128, 192)
     assert Critic(width=4)(image, hole).shape == (1, 16, 2, 3)
+
+
+def test_training_goes_on_from_a_shipped_file(
+    generator: Generator, tmp_path: Path
+) -> None:
+    file = tmp_path / "inpaint.onnx"
+    file.write_bytes(export(generator, facts={"steps": "4800"}))
+    trainer = begin(tmp_path / "none.pt", {"width": 8}, device="cpu", start=file)
+    assert trainer.step == 4800
+    for given in (trainer.generator.eval(), trainer.smoothed()):
+        with torch.no_grad():
+            one, other = given(*question(48, 64))[1], generator(*question(48, 64))[1]
+        assert (one - other).abs().max() < TOLERANCE  # of weights in half precision
+    untaught = begin(tmp_path / "none.pt", {"width": 8}, device="cpu")
+    assert untaught.step == 0
 
 
 def test_torch_and_onnx_agree_at_sizes_never_exported(generator: Generator) -> None:

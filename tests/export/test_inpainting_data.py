@@ -7,9 +7,10 @@ import pytest
 import torch
 
 from export.inpainter_exam import exam, marks
+from export.inpainter_trainer import Recipe, Trainer
 from export.inpainting_data import Sheet, fronts, held_out, painted, straighten
 from export.masks import outlines, standing
-from export.train_inpainter import Recipe, Trainer, batch
+from export.train_inpainter import batch
 from nostalgin_core.homography import between
 from nostalgin_core.measure.free_form import free_form, free_form_share
 
