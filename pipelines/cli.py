@@ -18,6 +18,7 @@ from pipelines.evaluate import commands
 from pipelines.launch import built, told
 
 TOO_MANY_REJECTIONS: Final = 3
+MOST_HOMELESS: Final = 0.5  # of the photos; with more, the list is another's
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
 app = typer.Typer(
@@ -156,6 +157,11 @@ def index_command(
         fronts_without_photo=made.without_photo,
         photos_without_front=list(made.without_front),
     )
+    if made.homeless_share > MOST_HOMELESS:
+        count = len(made.without_front)
+        words = f"{count} of {made.photos} photos found no place: is it their list?"
+        voice.say("homeless", words, photos_without_front=count)
+        raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
 @app.command(
@@ -187,7 +193,8 @@ def build_command(
     voice = Voice(errors, machine=json_lines)
     folder = str(models or "")
     report = built(city, voice, models=folder, shard=shard, beam=context.args)
-    if report.rejected_share > max_rejected or not (report.blocks or shard):
+    whole = bool(report.blocks and report.photos)  # what no photo shows is assumed
+    if report.rejected_share > max_rejected or not (whole or shard):
         raise typer.Exit(TOO_MANY_REJECTIONS)
 
 

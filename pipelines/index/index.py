@@ -41,6 +41,11 @@ class Indexed:
     rejections: tuple[Rejection, ...]
     warnings: tuple[str, ...]
 
+    @property
+    def homeless_share(self) -> float:
+        """Tell which share of the photos found no place in any block."""
+        return len(self.without_front) / max(self.photos, 1)
+
 
 def index(
     photos: Path,

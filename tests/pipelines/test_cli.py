@@ -9,6 +9,8 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from pipelines.cli import app
+from pipelines.index import manifest
+from pipelines.store import Store
 from tests.data import ROOT
 from tests.pipelines import painted
 
@@ -72,6 +74,34 @@ def test_a_second_build_in_a_fresh_process_makes_nothing(tmp_path: Path) -> None
         kept.append([(file, file.stat().st_mtime_ns) for file in files])
     assert kept[0]
     assert kept[1] == kept[0]
+
+
+def test_an_index_in_which_most_photos_find_no_place_ends_with_3(
+    tmp_path: Path,
+) -> None:
+    photos, listed = tmp_path / "photos", tmp_path / "list.csv"
+    photos.mkdir()
+    for name in ("5_1.png", "7_1.png"):
+        (photos / name).write_bytes(painted.photo())
+    listed.write_text(painted.CATALOGUE)
+    words = ("index", photos, "--catalogue", listed, "-o", tmp_path / "city")
+    assert nostalgin(*words).exit_code == 0
+    (photos / "7_2.png").write_bytes(painted.photo())
+    result = nostalgin(*words)
+    assert result.exit_code == 3
+    assert "2 of 3 photos found no place" in result.output
+
+
+def test_a_build_without_one_photograph_ends_with_3(tmp_path: Path) -> None:
+    city = painted.write_city(tmp_path)
+    rows = manifest.read(Store(str(city))).rows
+    bare = [
+        manifest.row_of("", row.front, root="", credit="") for row in rows if row.front
+    ]
+    manifest.write(Store(str(city)), bare)
+    models = ("--models", tmp_path / "models")
+    result = nostalgin("build", city, *models)
+    assert result.exit_code == 3, result.output
 
 
 def test_an_unreadable_photo_ends_with_1_and_without_a_traceback(
