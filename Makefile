@@ -58,4 +58,4 @@ chromium:
 	@sh deploy/chromium.sh
 
 clean:
-	rm -rf $(VENV) viewer/node_modules pipelines/site/viewer_dist demo-city
+	rm -rf $(VENV) viewer/node_modules pipelines/site/viewer_dist pipelines/viewer_dist demo-city

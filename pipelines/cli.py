@@ -1,6 +1,7 @@
 """The command line: `nostalgin demo | index | build | view | explain | evaluate`.
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done with more rejections than allowed.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done with more rejections than allowed,
+with most photos of no known place, or without one photograph.
 Beam and the networks are imported by the commands that need them, so that `--help`
 answers at once.
 """
@@ -263,9 +264,11 @@ def demo_command(
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
         named = {"credit": CREDIT, "title": TITLE}
-        index.index(photos, listed, str(folder), force=True, **named)
+        made = index.index(photos, listed, str(folder), force=True, **named)
     except OSError as problem:
         raise unwritable(folder, problem) from problem
+    for warning in made.warnings:
+        voice.say("warning", f"warning: {warning}", warning=warning)
     built(str(folder), voice, beam=beam)
     site = folder / "site"
     voice.say(

@@ -1,5 +1,6 @@
 """One build from its manifest to its published run."""
 
+import copy
 import json
 import re
 import time
@@ -25,7 +26,8 @@ from pipelines.index import manifest
 from pipelines.index.manifest import Manifest, Unusable
 from pipelines.index.plan import Plan, plan
 from pipelines.models import NETWORKS, Models, one_thread
-from pipelines.store import Store, Unstored, Versions, runs
+from pipelines.store import Store, Unstored, runs
+from pipelines.store.versions import Versions
 
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage
@@ -101,7 +103,8 @@ def build(
     todo = plan(found.rows, city=ours.city, shard=shard)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
-    site.claim(store)  # whose folder it is, too, is told now
+    if shard == (1, 1):
+        site.claim(store)  # whose folder it is, too, is told now
     run = runs.run_id(found.sha256, bench.versions, ours.shard)
     tell(
         "start",
@@ -142,8 +145,8 @@ def launched(
         Lost: if what was made could not be kept.
     """
     known = Plan(todo.photos, todo.blocks, (*found.rejections, *todo.rejections))
-    own = embedded.runner(options)
-    pipeline = beam.Pipeline(own, options=options)
+    given = copy.deepcopy(options)  # which the embedded runner changes for itself
+    pipeline = beam.Pipeline(embedded.runner(given), options=given)
     write(city(pipeline, known, bench), bench, run)
     near = options.view_as(StandardOptions).runner == embedded.EMBEDDED
     try:

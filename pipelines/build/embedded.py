@@ -28,16 +28,17 @@ HERE: Final = "localhost:"  # as the workers are told to call
 
 
 def runner(options: PipelineOptions) -> FnApiRunner | None:
-    """Make the embedded runner where several processes are asked of it.
+    """Make the embedded runner where processes are asked of it, and change its options.
 
     Otherwise, and for other runners, None: Beam makes them from the options. More than
-    one worker means processes, not threads: the time between calls of ONNX Runtime,
-    OpenCV and NumPy is Python's own.
+    one worker means processes, unless threads are asked for: the time between calls of
+    ONNX Runtime, OpenCV and NumPy is Python's own.
     """
     direct = options.view_as(DirectOptions)
-    several = (direct.direct_num_workers or 1) != 1
+    asked = direct.direct_running_mode == "multi_processing"
     threads = direct.direct_running_mode == "multi_threading"
-    if options.view_as(StandardOptions).runner != EMBEDDED or threads or not several:
+    processes = asked or (direct.direct_num_workers != 1 and not threads)
+    if options.view_as(StandardOptions).runner != EMBEDDED or not processes:
         return None
     direct.direct_running_mode = "in_memory"  # or else Beam takes its own command
     workers = SubprocessSDKEnvironment.from_command_string(command())

@@ -14,7 +14,8 @@ from pipelines import site
 from pipelines.build.blocks import Modelled, Placed, texture_of
 from pipelines.build.stages import FacadeRef
 from pipelines.index.plan import PhotoRef
-from pipelines.store import Store, Versions, runs, tables
+from pipelines.store import Store, runs, tables
+from pipelines.store.versions import Versions
 
 Rows = Iterable[dict[str, Any]]
 

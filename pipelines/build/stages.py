@@ -22,7 +22,8 @@ from pipelines.build import artifacts
 from pipelines.build.attempt import Attempt
 from pipelines.index.plan import PhotoRef
 from pipelines.models import Models, Once
-from pipelines.store import Store, Versions, tables
+from pipelines.store import Store, tables
+from pipelines.store.versions import Versions
 
 
 @dataclass(frozen=True)

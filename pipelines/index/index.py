@@ -71,8 +71,8 @@ def index(
     mended = manifest.mended_by_hand(store)
     if mended is not None and not force:
         raise Nothing(
-            f"{city}/{manifest.CSV} was mended by hand: with --force it is replaced "
-            "and a copy is kept, or name another folder"
+            f"{city}/{mended[0]} is not as index wrote it, but mended by hand or cut "
+            "off: with --force it is replaced and a copy kept, or name another folder"
         )
     names, unnamed = spelt(images(photos, city))
     read = from_names(names, photos) if listed is None else from_csv(listed)
@@ -93,7 +93,7 @@ def index(
         )
         for photo, front in rows
     ]
-    kept = [] if mended is None else [manifest.keep_copy(store, mended)]
+    kept = [] if mended is None else [manifest.keep_copy(store, *mended)]
     manifest.write(store, cells, title=cleaned(title))
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),

@@ -6,6 +6,7 @@ that was mended by hand is noticed, and wins; it keeps the city's title, too. Co
 are documented in `docs/manifest.md`; columns that are not known are kept.
 """
 
+import contextlib
 import dataclasses
 import hashlib
 import io
@@ -116,26 +117,30 @@ def rewrite(store: Store, found: Manifest) -> Manifest:
     return read(store)
 
 
-def mended_by_hand(store: Store) -> bytes | None:
-    """Read the CSV if people have written in it, now or before an earlier build."""
+def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
+    """Read the manifest if people have written in it, now or before an earlier build.
+
+    Returns the name of the file that holds their work, and its bytes.
+    """
     csv, parquet = optional(store, CSV), optional(store, PARQUET)
-    if csv is None or parquet is None:
-        return csv
-    try:
-        told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
-    except (pa.ArrowInvalid, OSError):  # whatever it told is lost
-        return csv
+    told: dict[bytes, bytes] = {}
+    if parquet is not None:
+        with contextlib.suppress(pa.ArrowInvalid, OSError):  # what it told is lost
+            told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
+    if csv is None:
+        return (PARQUET, parquet) if parquet is not None and MENDED in told else None
     same = told.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
-    return None if same and MENDED not in told else csv
+    return None if same and MENDED not in told else (CSV, csv)
 
 
-def keep_copy(store: Store, csv: bytes) -> str:
-    """Keep a manifest under the day and time of now, and tell its name."""
-    stem = f"manifest.{time.strftime('%Y-%m-%dT%H%M%SZ', time.gmtime())}"
-    names = (f"{stem}{more}.csv" for more in ("", *(f".{n}" for n in range(2, 100))))
-    name = next(name for name in names if not store.exists(name))
-    store.write_bytes(name, csv)
-    return name
+def keep_copy(store: Store, name: str, data: bytes) -> str:
+    """Keep a manifest under the day and time of now, and tell that name."""
+    stem, _, kind = name.rpartition(".")
+    stem += time.strftime(".%Y-%m-%dT%H%M%SZ", time.gmtime())
+    names = (f"{stem}{n}.{kind}" for n in ("", *(f".{n}" for n in range(2, 100))))
+    copy = next(one for one in names if not store.exists(one))
+    store.write_bytes(copy, data)
+    return copy
 
 
 def typed(row: Row) -> dict[str, Any]:
@@ -202,7 +207,7 @@ def parsed(data: bytes, where: str) -> pa.Table:
     except (pa.ArrowInvalid, OSError) as problem:
         raise Unusable(
             f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
-            f"{CSV} will be read, or run `nostalgin index` again"
+            f"{CSV} will be read, or run `nostalgin index --force`"
         ) from problem
 
 

@@ -7,7 +7,9 @@ off is known as our own the next time. What it does not name is a stranger's: it
 neither changed nor removed, and where it stands in the way nothing is written at all.
 """
 
+import glob
 import json
+import os
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 from typing import Final
@@ -27,7 +29,9 @@ def written(root: Path) -> frozenset[str]:
     """
     if root.is_symlink():
         raise Foreign(f"{root} is a link: remove it, and a folder will be made")
-    if not root.exists() or (root.is_dir() and not any(root.iterdir())):
+    if not root.exists() or (
+        root.is_dir() and not any(map(a_stranger, root.iterdir()))
+    ):
         return frozenset()
     try:
         names = json.loads((root / RECORD).read_bytes())
@@ -39,6 +43,11 @@ def written(root: Path) -> frozenset[str]:
             "move them elsewhere, and build again"
         )
     return frozenset(names)
+
+
+def a_stranger(path: Path) -> bool:
+    """Tell whether a file is more than the first trace of a publishing cut off."""
+    return not path.match(partial(RECORD, "*"))
 
 
 def inside(name: object) -> bool:
@@ -80,19 +89,23 @@ class Folder:
         """Remove what we wrote earlier and not this time."""
         for name in sorted(self._before | self._names):
             path = self._root / name
-            if any(part.is_symlink() for part in (path, *self._folders(name))):
+            if any(folder.is_symlink() for folder in self._folders(name)):
                 continue
-            partial(path).unlink(missing_ok=True)
-            if name not in self._names and path.is_file():
-                path.unlink()
+            old = [] if name in self._names else [path]
+            for one in (*old, *path.parent.glob(partial(glob.escape(path.name), "*"))):
+                if one.is_file() and not one.is_symlink():
+                    one.unlink()
         self._record(self._names)
 
     def _free(self, name: str) -> None:
         for folder in self._folders(name):
             if folder.is_symlink():
                 raise Foreign(f"{folder} is a link, it leads out: remove it")
+            if folder.exists() and not folder.is_dir():
+                raise Foreign(f"{folder} is no folder: move it elsewhere")
         path = self._root / name
-        if name not in self._before and (path.exists() or path.is_symlink()):
+        there = path.exists() or path.is_symlink()
+        if path.is_dir() or (there and name not in self._before):
             raise Foreign(f"{path} is another's: move it elsewhere, and build again")
 
     def _folders(self, name: str) -> list[Path]:
@@ -106,10 +119,16 @@ class Folder:
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
             return
-        partial(path).write_bytes(data)
-        partial(path).replace(path)
+        beside = path.with_name(partial(path.name, str(os.getpid())))
+        beside.unlink(missing_ok=True)
+        with beside.open("xb") as file:  # never through a link
+            file.write(data)
+            if name == RECORD:  # on which all else rests, after a power cut too
+                file.flush()
+                os.fsync(file.fileno())
+        beside.replace(path)
 
 
-def partial(path: Path) -> Path:
-    """Name the file that is written beside a path, and then moved into it."""
-    return path.with_name(f".{path.name}.partial")
+def partial(name: str, process: str) -> str:
+    """Name the file that is written beside another, and then moved into its place."""
+    return f".{name}.{process}.partial"

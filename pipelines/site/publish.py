@@ -15,7 +15,8 @@ from pipelines.index.manifest import Row, natural
 from pipelines.index.plan import rooted
 from pipelines.site import site
 from pipelines.site.folder import written
-from pipelines.store import Store, Versions, runs
+from pipelines.store import Store, runs
+from pipelines.store.versions import Versions
 
 CURRENT: Final = "CURRENT"
 SITE: Final = "site"

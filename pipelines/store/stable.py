@@ -31,9 +31,9 @@ def stable(value: Any) -> str:  # noqa: PLR0911 - one for each kind
     if isinstance(value, (tuple, list)):
         return f"({', '.join(map(stable, value))})"
     if isinstance(value, (set, frozenset)):
-        return f"{{{', '.join(sorted(map(stable, value)))}}}"
-    if isinstance(value, dict):
-        pairs = sorted(f"{stable(k)}: {stable(v)}" for k, v in value.items())
+        return f"set({', '.join(sorted(map(stable, value)))})"
+    if isinstance(value, dict):  # its order may be what counts: the first that fits
+        pairs = (f"{stable(k)}: {stable(v)}" for k, v in value.items())
         return f"{{{', '.join(pairs)}}}"
     if isinstance(value, (np.ndarray, np.generic)):
         return f"{value.dtype}{value.shape}{stable(value.tolist())}"
@@ -55,6 +55,9 @@ def named(value: Any) -> str:
     Raises:
         ValueError: if it has no name of its own.
     """
+    whose = getattr(value, "__self__", None)
+    if not (whose is None or inspect.ismodule(whose)):
+        raise ValueError(f"{value!r} has no name of its own: it is bound to an object")
     name = f"{value.__module__}.{value.__qualname__}"
     if "<" in name:
         raise ValueError(f"{name} has no name of its own: define it in its module")

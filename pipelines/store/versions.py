@@ -2,11 +2,11 @@
 
     <code version>-<hash of the parameters and of the network>
 
-The code version is raised by hand when a stage's results change; a comment or a rename
-must not send an archive back to its first photo. The parameters are the defaults in the
-signatures of the functions and the constants of the modules behind what the stage's
-room hands on, and of all modules of the core that these use, so that a changed one
-can't be forgotten.
+The code version is raised by hand when a stage's results change; a comment must not
+send an archive back to its first photo (a constant that moves or is renamed does). The
+parameters are the defaults in the signatures of the functions and the constants of the
+modules behind what the stage's room hands on, and of all modules of the core that these
+use, so that a changed one can't be forgotten.
 """
 
 import dataclasses

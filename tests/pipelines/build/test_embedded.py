@@ -35,6 +35,18 @@ def test_beam_makes_its_runner_itself_where_no_processes_are_asked_for(
     assert embedded.runner(options("city", beam=beam)) is None
 
 
+@pytest.mark.parametrize(
+    "beam",
+    [
+        ["--direct_num_workers=2"],
+        ["--direct_num_workers=0"],
+        ["--direct_running_mode=multi_processing"],
+    ],
+)
+def test_processes_are_started_by_our_own_command(beam: list[str]) -> None:
+    assert embedded.runner(options("city", beam=beam)) is not None
+
+
 def test_a_blank_in_the_interpreter_s_path_is_quoted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -63,6 +63,20 @@ def test_a_list_that_somebody_wrote_alone_is_kept(photos: Path) -> None:
         indexed(photos)
 
 
+def test_it_is_kept_where_only_its_other_form_is_left(photos: Path) -> None:
+    indexed(photos)
+    mend(photos)
+    store = Store(str(photos.parent / "city"))
+    manifest.rewrite(store, manifest.read(store))
+    (photos.parent / "city" / manifest.CSV).unlink()
+    whole = (photos.parent / "city" / manifest.PARQUET).read_bytes()
+    with pytest.raises(Nothing, match=r"manifest\.parquet"):
+        indexed(photos)
+    indexed(photos, force=True)
+    (copy,) = (photos.parent / "city").glob("manifest.2*.parquet")
+    assert copy.read_bytes() == whole
+
+
 def test_by_force_it_is_replaced_and_a_copy_is_kept_each_time(photos: Path) -> None:
     indexed(photos)
     first = mend(photos)

@@ -1,4 +1,5 @@
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -87,10 +88,43 @@ def test_what_lies_behind_a_link_in_a_files_place_is_not_removed(
 @pytest.mark.parametrize("most", range(len(NAMES)))
 def test_one_that_was_cut_off_is_gone_on_with(most: int, tmp_path: Path) -> None:
     publish(tmp_path / "site", most=most)
-    (tmp_path / "site/.index.html.partial").write_text("half of")
+    (tmp_path / "site/.index.html.7.partial").write_text("half of")
     publish(tmp_path / "site")
     publish(tmp_path / "whole")
     assert files(tmp_path / "site") == files(tmp_path / "whole")
+
+
+def test_one_that_was_cut_off_in_its_record_is_gone_on_with(tmp_path: Path) -> None:
+    (tmp_path / "site").mkdir()
+    (tmp_path / f"site/.{RECORD}.7.partial").write_text("half of")
+    publish(tmp_path / "site")
+    assert set(files(tmp_path / "site")) >= {RECORD, *NAMES}
+
+
+def test_a_link_in_the_place_of_half_a_file_is_not_written_through(
+    tmp_path: Path,
+) -> None:
+    publish(tmp_path / "site", ("blocks/1.glb",))
+    (tmp_path / "original").write_text("mine")
+    link = tmp_path / f"site/.index.html.{os.getpid()}.partial"
+    link.symlink_to(tmp_path / "original")
+    publish(tmp_path / "site")
+    assert (tmp_path / "original").read_text() == "mine"
+    assert not (tmp_path / "site/index.html").is_symlink()
+
+
+@pytest.mark.parametrize(("place", "folder"), [("photos", False), ("new.html", True)])
+def test_a_file_for_a_folder_or_a_folder_for_a_file_stops_all(
+    place: str, tmp_path: Path, *, folder: bool
+) -> None:
+    publish(tmp_path / "site", ("index.html",))
+    (tmp_path / "site" / place).mkdir() if folder else (
+        tmp_path / "site" / place
+    ).write_text("mine")
+    before = files(tmp_path)
+    with pytest.raises(Foreign, match=place):
+        publish(tmp_path / "site", (*NAMES, "new.html"))
+    assert files(tmp_path) == before
 
 
 @pytest.mark.parametrize(
