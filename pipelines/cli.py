@@ -10,13 +10,16 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
 from pipelines.console import Voice, errors, examples, fail, unwritable
 from pipelines.evaluate import commands
 from pipelines.launch import built, told
+
+if TYPE_CHECKING:  # it is slow to load
+    from pipelines.index import Indexed
 
 TOO_MANY_REJECTIONS: Final = 3
 MOST_HOMELESS: Final = 0.5  # of the photos; with more, the list is another's
@@ -143,6 +146,13 @@ def index_command(
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
+    tell_index(made, city, voice)
+    if made.homeless_share > MOST_HOMELESS:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
+
+
+def tell_index(made: "Indexed", city: str, voice: Voice) -> None:
+    """Tell what came of an index."""
     for warning in made.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
     for one in made.rejections:
@@ -162,7 +172,6 @@ def index_command(
         count = len(made.without_front)
         words = f"{count} of {made.photos} photos found no place: is it their list?"
         voice.say("homeless", words, photos_without_front=count)
-        raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
 @app.command(

@@ -106,13 +106,9 @@ def build(
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
     run = runs.run_id(found.sha256, bench.versions, ours.shard)
-    tell(
-        "start",
-        f"run {run}: {len(todo.photos)} photos, {len(todo.blocks)} blocks",
-        run=run,
-        photos=len(todo.photos),
-        blocks=len(todo.blocks),
-    )
+    counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
+    words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
+    tell("start", words, run=run, **counts)
     began = time.time()
     note(store, run, options, began)  # a folder that can't be written to is told now
     near = watch if "://" not in store.root else unwatched

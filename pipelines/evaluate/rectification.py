@@ -83,9 +83,8 @@ def evaluate(
     if "painted" in parts:
         report["painted"] = streets.evaluate(used, fronts=fronts, seed=seed, keep=keep)
     if drawn is not None:
-        report["lines"] = lines_drawn(
-            holding(sets, block) if "labels" in parts else [], drawn, block, keep=keep
-        )
+        shown = holding(sets, block) if "labels" in parts else []
+        report["lines"] = lines_drawn(shown, drawn, block, keep=keep)
     if "table2" in parts:
         folders = {one.name: one / "photos" for one in sets}
         report["table2"] = {n: search_space.evaluate(f) for n, f in folders.items()}

@@ -4,7 +4,7 @@ In: files and CSV. Out: `manifest.csv` and `.parquet`; then photos and blocks to
 Open `index` first, then `manifest`.
 """
 
-from pipelines.index.index import Nothing, index
+from pipelines.index.index import Indexed, Nothing, index
 from pipelines.index.title import cleaned, of_folder
 
-__all__ = ["Nothing", "cleaned", "index", "of_folder"]
+__all__ = ["Indexed", "Nothing", "cleaned", "index", "of_folder"]

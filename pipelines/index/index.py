@@ -68,12 +68,7 @@ def index(
             mended manifest would be lost.
     """
     store = Store(city)
-    mended = manifest.mended_by_hand(store)
-    if mended is not None and not force:
-        raise Nothing(
-            f"{city}/{mended[0]} is not as index wrote it, but mended by hand or cut "
-            "off: with --force it is replaced and a copy kept, or name another folder"
-        )
+    mended = replaceable(store, force=force)
     names, unnamed = spelt(images(photos, city))
     read = from_names(names, photos) if listed is None else from_csv(listed)
     wanted = [e for e in read.entries if not blocks or e.block in blocks]
@@ -84,16 +79,13 @@ def index(
     fronts, doubts = catalogue.fronts(wanted)
     shown, strangers = catalogue.matched(read.entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
+    root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
+    credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
     cells = [
-        manifest.row_of(
-            photo,
-            front,
-            root=os.path.abspath(photos),  # noqa: PTH100 - a link stays a link
-            credit=credit or first_credit(shown.get(photo, ())),
-        )
+        manifest.row_of(photo, front, root=root, credit=credits_of.get(photo, credit))
         for photo, front in rows
     ]
-    kept = [] if mended is None else [manifest.keep_copy(store, *mended)]
+    kept = [] if mended is None else [copied(store, *mended)]
     manifest.write(store, cells, title=cleaned(title))
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
@@ -102,12 +94,29 @@ def index(
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
         rejections=(*unnamed, *read.rejections, *(strangers if not blocks else ())),
-        warnings=(
-            *about(read.warnings, {e.row for e in wanted}),
-            *doubts,
-            *(f"{name} keeps the manifest that was mended by hand" for name in kept),
-        ),
+        warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts, *kept),
     )
+
+
+def replaceable(store: Store, *, force: bool) -> tuple[str, bytes] | None:
+    """Give what people have written in the manifest, if it may be replaced.
+
+    Raises:
+        Nothing: if it may not.
+    """
+    mended = manifest.mended_by_hand(store)
+    if mended is not None and not force:
+        raise Nothing(
+            f"{store.root}/{mended[0]} is not as index wrote it, but mended by hand or "
+            "cut off: with --force it is replaced, and a copy is kept"
+        )
+    return mended
+
+
+def copied(store: Store, name: str, data: bytes) -> str:
+    """Keep a copy of a mended manifest, and say so."""
+    kept = manifest.keep_copy(store, name, data)
+    return f"{kept} keeps the manifest that was mended by hand"
 
 
 def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
