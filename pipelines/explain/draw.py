@@ -77,7 +77,7 @@ def stroked(picture: Colour, lines: Lines, colour: tuple[int, int, int]) -> Colo
 
 
 def evidence_colours(codes: EvidenceMap) -> Colour:
-    """Paint an evidence map by code, in the tints that the viewer is told."""
+    """Paint an evidence map by code, in the tints that a model's files bear."""
     palette = np.zeros((256, 3), np.uint8)
     for code, tint in evidence.TINTS.items():
         palette[code] = tint[::-1]
