@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import apache_beam as beam
@@ -13,8 +14,7 @@ from apache_beam import pvalue
 from nostalgin_core import block, model
 from nostalgin_core.block import Settled
 from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
-from pipelines.build.attempt import Attempt
-from pipelines.build.stages import Bench, FacadeRef, Work, named
+from pipelines.build.stages import Bench, FacadeRef, inpainted, named
 from pipelines.index.plan import BlockTask
 from pipelines.store import tables
 
@@ -78,9 +78,11 @@ def texture_of(ref: FacadeRef) -> Texture:
 class Assign(beam.PTransform):
     """Blocks grouped with their facades in; blocks with cuboids out."""
 
+    bench: Bench
+
     def expand(self, grouped: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        return grouped | Attempt(placed, stage="assign")
+        return grouped | self.bench.attempt(placed, "assign")
 
 
 @dataclass
@@ -91,11 +93,14 @@ class Model(beam.PTransform):
 
     def expand(self, grouped: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        return grouped | Attempt(Work(modelled, self.bench), stage="block")
+        return grouped | self.bench.attempt(modelled, "block")
 
 
-def placed(grouped: tuple[str, dict[str, Iterable[Any]]]) -> list[Placed | Rejection]:
+def placed(
+    grouped: tuple[str, dict[str, Iterable[Any]]], bench: Bench
+) -> list[Placed | Rejection]:
     """Give facades to the fronts of a block, and raise its buildings."""
+    del bench  # numbers alone: nothing is read or kept
     _, parts = grouped
     (task,) = parts["task"]
     facades = tuple(sorted(parts["facades"], key=order))
@@ -125,8 +130,9 @@ def modelled(
     one = only(one, {texture_of(ref) for ref in parts["finished"]})
     key = bench.versions.key("block", *contents(one, bench))
     path = bench.versions.path("block", key)
-    bench.keep(path, lambda: glb(one, bench))
-    row = bench.store.read_table(path, ["sha256", "low_m", "high_m"]).to_pylist()[0]
+    make = partial(bench.keep, path, partial(glb, one, bench))
+    make()
+    row = bench.read(path, make, ["sha256", "low_m", "high_m"]).to_pylist()[0]
     return Modelled(one, path, row["sha256"], tuple(row["low_m"]), tuple(row["high_m"]))
 
 
@@ -179,5 +185,6 @@ def glb(one: Placed, bench: Bench) -> pa.Table:
 def finished(ref: FacadeRef, bench: Bench) -> Elevation:
     """Read a facade's finished elevation."""
     key = bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
-    rows = bench.store.read_table(bench.versions.path("inpaint", key))
+    again = partial(inpainted, ref, bench, bench.network("inpaint"))
+    rows = bench.read(bench.versions.path("inpaint", key), again)
     return tables.records(Elevation, rows)[0]

@@ -22,6 +22,7 @@ from pipelines.build.city import Built, city
 from pipelines.build.options import CityOptions, part
 from pipelines.build.rows import WriteTable
 from pipelines.build.stages import Bench
+from pipelines.build.supervisor import Limits
 from pipelines.index import manifest
 from pipelines.index.manifest import Manifest, Unusable
 from pipelines.index.plan import Plan, plan
@@ -99,7 +100,8 @@ def build(
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORKS:
         models.read(network)  # a spoiled file is told here, not by every photo
-    bench = Bench(store, Versions.present(models), models)
+    limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
+    bench = Bench(store, Versions.present(models), models, limits, ours.retry)
     todo = plan(found.rows, city=ours.city, shard=shard)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))

@@ -57,7 +57,7 @@ def city(pipeline: beam.Pipeline, plan: Plan, bench: Bench) -> Built:
     placed = (
         {"task": tasks, "facades": by_block}
         | "Group facades" >> beam.CoGroupByKey()
-        | Assign()
+        | Assign(bench)
     )
     finished = (
         placed.made

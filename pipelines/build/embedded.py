@@ -22,7 +22,7 @@ from apache_beam.runners.portability.fn_api_runner.fn_runner import FnApiRunner
 from apache_beam.transforms.environments import SubprocessSDKEnvironment
 
 EMBEDDED: Final = "FnApiRunner"
-WORKER: Final = "apache_beam.runners.worker.sdk_worker_main"
+WORKER: Final = "pipelines.build.worker"
 EVERYWHERE: Final = "[::]:"
 HERE: Final = "localhost:"  # as the workers are told to call
 

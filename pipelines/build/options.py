@@ -12,6 +12,7 @@ from apache_beam.options.pipeline_options import (
 from apache_beam.runners.runner import create_runner
 
 from pipelines.build.embedded import EMBEDDED
+from pipelines.build.supervisor import Limits
 
 OURS: Final = ("--city", "--models", "--shard")
 # What people call it; Beam itself would fetch another runner for these names.
@@ -26,6 +27,27 @@ class CityOptions(PipelineOptions):
         parser.add_argument("--city", help="the city folder")
         parser.add_argument("--models", default="", help="folder of other networks")
         parser.add_argument("--shard", default="", help="part of the blocks, as 3/16")
+        most = Limits()
+        parser.add_argument(
+            "--stage_seconds",
+            type=float,
+            default=most.seconds,
+            help="what a stage may take for one element; 0: in the worker's own process",
+        )
+        parser.add_argument(
+            "--stage_gigabytes",
+            type=float,
+            default=most.gigabytes,
+            help="the memory that a stage may take",
+        )
+        parser.add_argument(
+            "--retry", action="store_true", help="try again what was put aside"
+        )
+        parser.add_argument(
+            "--publish_anyway",
+            action="store_true",
+            help="replace a better site, too",
+        )
 
 
 def options(

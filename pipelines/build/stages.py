@@ -6,8 +6,10 @@ and a facade's number.
 """
 
 import hashlib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import apache_beam as beam
@@ -20,10 +22,15 @@ from nostalgin_core.steps import rounded
 from pipelines import site
 from pipelines.build import artifacts
 from pipelines.build.attempt import Attempt
+from pipelines.build.isolation import Aside, Isolation
+from pipelines.build.supervisor import Limits
 from pipelines.index.plan import PhotoRef
 from pipelines.models import Models, Once
-from pipelines.store import Store, tables
+from pipelines.store import Damaged, Store, tables
+from pipelines.store.store import key_of
 from pipelines.store.versions import Versions
+
+Make = Callable[[], pa.Table | Rejection]
 
 
 @dataclass(frozen=True)
@@ -46,15 +53,52 @@ class Bench:
     store: Store
     versions: Versions
     models: Models
+    limits: Limits = field(default_factory=Limits)
+    retry: bool = False  # what ended its process in an earlier run
+    damaged: list[str] = field(default_factory=list, compare=False)  # met and dropped
 
-    def keep(self, path: str, make: Callable[[], pa.Table | Rejection]) -> Any:
+    def attempt(self, function: Callable[..., Any], stage: str, *tools: Any) -> Attempt:
+        """Have a stage's function work on elements, each where it can harm no other."""
+        return Attempt(Work(function, self, tools), stage, self._isolation())
+
+    def _isolation(self) -> Isolation | None:
+        if not self.limits.seconds:
+            return None
+        version = key_of(json.dumps(vars(self.versions)))[:16]
+        return Isolation(self.limits, Aside(self.store, version, self.retry))
+
+    def keep(self, path: str, make: Make) -> Rejection | None:
         """Make an artifact unless it is there; tell its rejection, if it is one."""
-        verdict = self.store.verdict(path)
+        try:
+            verdict = self.store.verdict(path)
+        except Damaged:
+            self.drop(path)
+            verdict = False
         if verdict is False:
             made = make()
             self.store.keep(path, made)
             return made if isinstance(made, Rejection) else None
         return verdict if isinstance(verdict, Rejection) else None
+
+    def read(
+        self, path: str, again: Callable[[], Any], columns: Sequence[str] | None = None
+    ) -> pa.Table:
+        """Read an artifact, or some columns; a damaged one is made `again` first."""
+        try:
+            return self.store.read_table(path, columns)
+        except Damaged:
+            self.drop(path)
+            again()
+            return self.store.read_table(path, columns)
+
+    def drop(self, path: str) -> None:
+        """Drop a damaged artifact, and count it."""
+        self.store.drop(path)
+        self.damaged.append(path)
+
+    def network(self, name: str) -> Once:
+        """Name a network, to be loaded by the process that first calls it."""
+        return Once(self.models, name)
 
     def decoded(self, ref: PhotoRef) -> Photo | Rejection:
         """Read and decode a photo again: cheaper than carrying its pixels."""
@@ -88,9 +132,8 @@ class Segment(beam.PTransform):
 
     def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        network = Once(self.bench.models, "segment")
-        work = Work(segmented, self.bench, network)
-        return photos | Attempt(work, stage="segment")
+        network = self.bench.network("segment")
+        return photos | self.bench.attempt(segmented, "segment", network)
 
 
 @dataclass
@@ -101,7 +144,7 @@ class Matte(beam.PTransform):
 
     def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        return photos | Attempt(Work(matted, self.bench), stage="matte")
+        return photos | self.bench.attempt(matted, "matte")
 
 
 @dataclass
@@ -112,7 +155,7 @@ class Rectify(beam.PTransform):
 
     def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        return photos | Attempt(Work(rectified, self.bench), stage="rectify")
+        return photos | self.bench.attempt(rectified, "rectify")
 
 
 @dataclass
@@ -123,9 +166,8 @@ class Inpaint(beam.PTransform):
 
     def expand(self, facades: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        network = Once(self.bench.models, "inpaint")
-        work = Work(inpainted, self.bench, network)
-        return facades | Attempt(work, stage="inpaint")
+        network = self.bench.network("inpaint")
+        return facades | self.bench.attempt(inpainted, "inpaint", network)
 
 
 @dataclass(frozen=True)
@@ -134,12 +176,16 @@ class Work:
 
     function: Callable[..., Any]
     bench: Bench
-    network: Once | None = None
+    tools: tuple[Any, ...] = ()
 
     def __call__(self, ref: Any) -> Any:
         """Work on one element."""
-        tools = () if self.network is None else (self.network,)
-        return self.function(ref, self.bench, *tools)
+        return self.function(ref, self.bench, *self.tools)
+
+    @property
+    def damaged(self) -> list[str]:
+        """The artifacts that were found damaged, and made again."""
+        return self.bench.damaged
 
 
 def segmented(ref: PhotoRef, bench: Bench, network: Once) -> PhotoRef | Rejection:
@@ -164,7 +210,8 @@ def matted(ref: PhotoRef, bench: Bench) -> PhotoRef | Rejection:
     def make() -> pa.Table | Rejection:
         picture, versions = needed(bench.decoded(ref)), bench.versions
         path = versions.path("segment", versions.segment_key(ref.sha256))
-        found = tables.records(Instance, bench.store.read_table(path))
+        again = partial(segmented, ref, bench, bench.network("segment"))
+        found = tables.records(Instance, bench.read(path, again))
         result = matte.matte(picture, tuple(found))
         return (
             result if isinstance(result, Rejection) else artifacts.matted_table(result)
@@ -182,14 +229,15 @@ def rectified(ref: PhotoRef, bench: Bench) -> list[FacadeRef | Rejection]:
 
     def make() -> pa.Table | Rejection:
         picture = needed(bench.decoded(ref))
-        result = artifacts.matted_from(bench.store.read_table(before))
+        again = partial(matted, ref, bench)
+        result = artifacts.matted_from(bench.read(before, again))
         views = tuple(map(rounded, rectify.rectify(picture, result)))
         return artifacts.rectified_table(picture.key, result, views)
 
     rejection = bench.keep(path, make)
     if rejection is not None:
         return [named(rejection, ref.name)]
-    rows = bench.store.read_table(path, artifacts.NUMBERS)
+    rows = bench.read(path, partial(bench.keep, path, make), artifacts.NUMBERS)
     outcomes = artifacts.seen_from(rows)
     return [
         named(one, ref.name) if isinstance(one, Rejection) else FacadeRef(ref, one)
@@ -203,7 +251,8 @@ def inpainted(ref: FacadeRef, bench: Bench, network: Once) -> FacadeRef | Reject
 
     def make() -> pa.Table | Rejection:
         before = versions.path("rectify", versions.rectify_key(sha256))
-        view = artifacts.elevation_from(bench.store.read_table(before), ref.seen.facade)
+        found = bench.read(before, partial(rectified, ref.photo, bench))
+        view = artifacts.elevation_from(found, ref.seen.facade)
         return tables.table(Elevation, [inpaint.inpaint(view, network)])
 
     path = versions.path("inpaint", versions.inpaint_key(sha256, ref.seen.facade))
@@ -219,7 +268,7 @@ class Thumbnail(beam.PTransform):
 
     def expand(self, photos: pvalue.PCollection) -> Any:
         """Wire the stage."""
-        return photos | Attempt(Work(shrunk, self.bench), stage="thumbnail")
+        return photos | self.bench.attempt(shrunk, "thumbnail")
 
 
 def shrunk(ref: PhotoRef, bench: Bench) -> list[PhotoRef]:

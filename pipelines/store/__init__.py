@@ -5,6 +5,7 @@ Open `store` first. Beside the door stand `versions`, which names what is kept b
 code and parameters that made it, `runs` and `tables`.
 """
 
+from pipelines.store.seal import Damaged
 from pipelines.store.store import Store, Unstored, parquet_bytes, textual
 
-__all__ = ["Store", "Unstored", "parquet_bytes", "textual"]
+__all__ = ["Damaged", "Store", "Unstored", "parquet_bytes", "textual"]

@@ -4,25 +4,29 @@
 
 The key is a hash of the keys of what it was made from and of the stage's version, so an
 artifact is never wrong, only unused: it is skipped where it exists, and a changed stage
-makes new ones beside the old. It is written under another name and then moved, so that
-a killed run leaves no half of one. A rejection is an artifact too.
+makes new ones beside the old. It is written to the disk under another name and then
+moved, so that neither a killed run nor a power cut leaves half of one; one that was
+damaged later is found out when it is read (`seal`). A rejection is an artifact too.
 """
 
+import contextlib
 import errno
 import hashlib
 import io
 import os
 import uuid
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from pathlib import Path
+from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.fs as pafs
 import pyarrow.parquet as pq
 
 from nostalgin_core.records import Rejection
-from pipelines.store import tables
+from pipelines.store import seal, tables
+from pipelines.store.seal import Damaged
 
 ARTIFACTS: Final = "artifacts"
 VERDICT: Final = b"nostalgin.verdict"
@@ -55,6 +59,18 @@ def parquet_bytes(table: pa.Table) -> bytes:
 def textual(name: str) -> bool:
     """Tell whether a file's name is text; a file system takes any bytes."""
     return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
+def durable(path: Path, data: bytes) -> None:
+    """Write a new file that is on the disk when this returns.
+
+    Raises:
+        FileExistsError: if there is one, or a link.
+    """
+    with path.open("xb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
 
 
 @dataclass(frozen=True)
@@ -100,40 +116,61 @@ class Store:
         target = f"{root}/{name}"
         system.create_dir(target.rpartition("/")[0], recursive=True)
         partial = f"{target}.{uuid.uuid4().hex[:8]}.partial"
-        with system.open_output_stream(partial) as stream:
-            stream.write(data)
+        if isinstance(system, pafs.LocalFileSystem):
+            durable(Path(partial), data)
+        else:
+            with system.open_output_stream(partial) as stream:
+                stream.write(data)
         system.move(partial, target)
 
+    def names(self, folder: str) -> list[str]:
+        """Name the files in a folder; none where there is no folder."""
+        system, root = self._open()
+        at = pafs.FileSelector(f"{root}/{folder}", allow_not_found=True)
+        return sorted(one.base_name for one in system.get_file_info(at))
+
+    def drop(self, name: str) -> None:
+        """Remove a file if it is there."""
+        system, root = self._open()
+        with contextlib.suppress(FileNotFoundError):
+            system.delete_file(f"{root}/{name}")
+
     def write_table(self, name: str, table: pa.Table) -> None:
-        """Write a table as Parquet, wholly or not at all."""
-        self.write_bytes(name, parquet_bytes(table))
+        """Write a table as sealed Parquet, wholly or not at all."""
+        self.write_bytes(name, seal.sealed(table))
 
     def read_table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
-        """Read a table, or some of its columns.
+        """Read a table that `write_table` wrote, or some of its columns.
 
         Raises:
             FileNotFoundError: if there is none.
+            Damaged: if it is not what was written.
         """
-        system, root = self._open()
-        with system.open_input_file(f"{root}/{name}") as file:
-            return pq.ParquetFile(file).read(None if columns is None else list(columns))
+        return self._read(name, lambda artifact: seal.read(artifact, columns))
 
     def verdict(self, name: str) -> Rejection | bool:
         """Tell what an artifact holds: True if made, its rejection, False if absent.
 
-        One that a power cut left empty or cut short is as good as absent.
+        Its footer is looked at; a damaged page is found out where it is read.
+
+        Raises:
+            Damaged: if it is not what was written.
         """
-        if not self.exists(name):
-            return False
+
+        def told(artifact: pq.ParquetFile) -> Rejection | bool:
+            if (artifact.schema_arrow.metadata or {}).get(VERDICT) != REJECTED:
+                return True
+            return tables.records(Rejection, seal.read(artifact))[0]
+
+        return self._read(name, told) if self.exists(name) else False
+
+    def _read(self, name: str, told: Callable[[pq.ParquetFile], Any]) -> Any:
         system, root = self._open()
         with system.open_input_file(f"{root}/{name}") as file:
             try:
-                artifact = pq.ParquetFile(file)
-            except pa.ArrowInvalid:
-                return False
-            if (artifact.schema_arrow.metadata or {}).get(VERDICT) != REJECTED:
-                return True
-            return tables.records(Rejection, artifact.read())[0]
+                return told(seal.opened(file))
+            except Damaged as problem:
+                raise Damaged(problem.why, name) from problem
 
     def keep(self, name: str, made: pa.Table | Rejection) -> None:
         """Write an artifact: rows that were made, or the rejection in their place.

@@ -1,0 +1,13 @@
+"""A worker of Beam that has forked its supervisor before it starts a thread."""
+
+import sys
+
+from pipelines.build.isolation import POOL
+
+if __name__ == "__main__":
+    import pipelines.build.blocks  # noqa: F401 - what both will need, loaded once
+
+    POOL.fill()
+    from apache_beam.runners.worker import sdk_worker_main
+
+    sdk_worker_main.main(sys.argv)
