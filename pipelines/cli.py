@@ -10,19 +10,15 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import Voice, errors, examples, fail, unwritable
+from pipelines.console import Voice, errors, examples, fail, indexed, unwritable
 from pipelines.evaluate import commands
 from pipelines.launch import built, told
 
-if TYPE_CHECKING:  # it is slow to load
-    from pipelines.index import Indexed
-
 TOO_MANY_REJECTIONS: Final = 3
-MOST_HOMELESS: Final = 0.5  # of the photos; with more, the list is another's
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
 app = typer.Typer(
@@ -130,48 +126,22 @@ def index_command(
     its columns.
     """
     from pipelines import index
+    from pipelines.store import Busy, Store, held
 
     voice = Voice(errors, machine=json_lines)
+    named = {"credit": credit, "title": title}
     try:
-        made = index.index(
-            photos,
-            catalogue,
-            city,
-            blocks=block or (),
-            credit=credit,
-            title=title,
-            force=force,
-        )
-    except index.Nothing as problem:
+        with held(Store(city)):
+            made = index.index(
+                photos, catalogue, city, blocks=block or (), force=force, **named
+            )
+    except (index.Nothing, Busy) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
-    tell_index(made, city, voice)
-    if made.homeless_share > MOST_HOMELESS:
+    indexed(made, city, voice)
+    if made.astray:
         raise typer.Exit(TOO_MANY_REJECTIONS)
-
-
-def tell_index(made: "Indexed", city: str, voice: Voice) -> None:
-    """Tell what came of an index."""
-    for warning in made.warnings:
-        voice.say("warning", f"warning: {warning}", warning=warning)
-    for one in made.rejections:
-        words = f"rejected {one.key}: {one.reason}: {one.detail}"
-        voice.say("rejected", words, key=one.key, reason=one.reason, detail=one.detail)
-    voice.say(
-        "done",
-        f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
-        f"{made.without_photo} fronts without a photo: {city}/manifest.csv",
-        photos=made.photos,
-        fronts=made.fronts,
-        blocks=made.blocks,
-        fronts_without_photo=made.without_photo,
-        photos_without_front=list(made.without_front),
-    )
-    if made.homeless_share > MOST_HOMELESS:
-        count = len(made.without_front)
-        words = f"{count} of {made.photos} photos found no place: is it their list?"
-        voice.say("homeless", words, photos_without_front=count)
 
 
 @app.command(
@@ -193,6 +163,20 @@ def build_command(
             help="Share of photos that may give nothing; above it, exit 3.",
         ),
     ] = 0.5,
+    publish_anyway: Annotated[
+        bool,
+        typer.Option("--publish-anyway", help="Replace a site that shows more, too."),
+    ] = False,
+    retry: Annotated[
+        bool, typer.Option("--retry", help="Try again what ended its process twice.")
+    ] = False,
+    seconds: Annotated[
+        float,
+        typer.Option("--stage-seconds", min=0, help="A stage's time for a photo."),
+    ] = 300.0,
+    gigabytes: Annotated[
+        float, typer.Option("--stage-gigabytes", min=0.5, help="And its memory.")
+    ] = 4.0,
     json_lines: JsonLines = False,
 ) -> None:
     """Build the city: every photo through every stage, one model a block, the site.
@@ -202,9 +186,13 @@ def build_command(
     """
     voice = Voice(errors, machine=json_lines)
     folder = str(models or "")
-    report = built(city, voice, models=folder, shard=shard, beam=context.args)
+    limits = [f"--stage_seconds={seconds}", f"--stage_gigabytes={gigabytes}"]
+    flags = ["--retry"] * retry + ["--publish_anyway"] * publish_anyway
+    beam = [*context.args, *limits, *flags]
+    report = built(city, voice, models=folder, shard=shard, beam=beam)
     whole = bool(report.blocks and report.photos)  # what no photo shows is assumed
-    if report.rejected_share > max_rejected or not (whole or shard):
+    poor = report.rejected_share > max_rejected or report.held
+    if poor or not (whole or shard):
         raise typer.Exit(TOO_MANY_REJECTIONS)
 
 

@@ -38,11 +38,14 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     from pipelines.index.manifest import Unusable
     from pipelines.models import Unlocked
     from pipelines.site import Foreign, ViewerMissingError
+    from pipelines.store import Busy, Damaged
 
     try:
         with hushed(errors):
             report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
-    except (Unusable, Unlocked, build.Lost, Foreign, ViewerMissingError) as problem:
+    except (Unusable, Unlocked, Foreign, ViewerMissingError) as problem:
+        raise fail(str(problem)) from problem
+    except (Busy, Damaged, build.Lost) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem

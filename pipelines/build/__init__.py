@@ -4,7 +4,8 @@ In: a city folder with a manifest. Out: artifacts, a run's tables, a `Report`.
 A stage of the core is a transform here; whom to tell, it is given. Open `city` first.
 """
 
-from pipelines.build.build import Lost, Report, build
+from pipelines.build.build import build
 from pipelines.build.options import options
+from pipelines.build.report import Lost, Report
 
 __all__ = ["Lost", "Report", "build", "options"]

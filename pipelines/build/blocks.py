@@ -14,7 +14,8 @@ from apache_beam import pvalue
 from nostalgin_core import block, model
 from nostalgin_core.block import Settled
 from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
-from pipelines.build.stages import Bench, FacadeRef, inpainted, named
+from pipelines.build.bench import Bench
+from pipelines.build.stages import FacadeRef, inpainted, named
 from pipelines.index.plan import BlockTask
 from pipelines.store import tables
 

@@ -4,12 +4,11 @@ import copy
 import json
 import re
 import time
-from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
@@ -18,53 +17,34 @@ from apache_beam.runners.runner import PipelineResult
 from nostalgin_core.records import Rejection
 from pipelines import site
 from pipelines.build import embedded, rows
+from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
+from pipelines.build.embedded import in_process
+from pipelines.build.isolation import POOL
 from pipelines.build.options import CityOptions, part
+from pipelines.build.report import (
+    Lost,
+    Report,
+    check,
+    remember,
+    reported,
+    shown_before,
+)
 from pipelines.build.rows import WriteTable
-from pipelines.build.stages import Bench
 from pipelines.build.supervisor import Limits
 from pipelines.index import manifest
 from pipelines.index.manifest import Manifest, Unusable
 from pipelines.index.plan import Plan, plan
 from pipelines.models import NETWORKS, Models, one_thread
-from pipelines.store import Store, Unstored, runs
+from pipelines.store import Damaged, Store, Unstored, held, runs
 from pipelines.store.versions import Versions
+
+HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
+LEAST_SHOWN: Final = 0.5  # of the photos; with more no city is held back
 
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage
 Watch = Callable[[Count, int], AbstractContextManager[object]]  # of so many photos
-
-
-class Lost(RuntimeError):  # noqa: N818 - it reads as what it is about
-    """Work that a runner neither did nor rejected, or that could not be kept."""
-
-
-@dataclass(frozen=True)
-class Report:
-    """What came of a build."""
-
-    run: str
-    photos: int
-    rejected_photos: int
-    facades: int
-    blocks: int
-    buildings: int
-    assumed: int
-    rejections: tuple[dict[str, Any], ...]
-
-    @property
-    def rejected_share(self) -> float:
-        """Tell which share of the photos gave nothing at all."""
-        return self.rejected_photos / max(self.photos, 1)
-
-    def grave(self) -> list[dict[str, Any]]:
-        """List the rejections that are of more than one facade among others."""
-        return [one for one in self.rejections if one["facade"] is None]
-
-    def reasons(self) -> list[tuple[str, int]]:
-        """Count rejections by stage and reason, most first."""
-        counted = Counter(f"{r['stage']}: {r['reason']}" for r in self.rejections)
-        return sorted(counted.items(), key=lambda one: (-one[1], one[0]))
 
 
 def silent(event: str, text: str, **facts: Any) -> None:
@@ -90,10 +70,26 @@ def build(
         Unusable: if the manifest can't be read, or names no front.
         Foreign: if the folder for the site holds what another wrote.
         Lost: if a runner lost work, or what it made could not be kept.
+        Busy: if another run is at work in the city folder.
     """
     one_thread()
     ours = options.view_as(CityOptions)
     store, shard = Store(ours.city), part(ours.shard)
+    if in_process(options) and ours.stage_seconds:
+        POOL.fill()  # before there are threads and open files
+    with held(store, shared=shard != (1, 1)):
+        return made(options, store, shard, tell, watch)
+
+
+def made(
+    options: PipelineOptions,
+    store: Store,
+    shard: tuple[int, int],
+    tell: Tell,
+    watch: Watch,
+) -> Report:
+    """Build in a city folder that is ours for the time."""
+    ours = options.view_as(CityOptions)
     found = manifest.rewrite(store, manifest.read(store))
     for warning in found.warnings:
         tell("warning", f"warning: {warning}", warning=warning)
@@ -114,16 +110,49 @@ def build(
     began = time.time()
     note(store, run, options, began)  # a folder that can't be written to is told now
     near = watch if "://" not in store.root else unwatched
-    with near(partial(bench.versions.counts, store.root), len(todo.photos)):
-        result = launched(options, todo, found, bench, run)
-    check(store, run, todo)
-    note(store, run, options, began, stages(result))
-    report = reported(store, run, todo)
-    if shard == (1, 1) and report.blocks:
-        site.publish(store, run, bench.versions, found.rows, title=found.title)
-        if "://" in store.root:
-            words = f"no site was written: build {store.root} where it is mounted"
-            tell("warning", f"warning: {words}", warning=words)
+    again = 0
+    for _ in range(HEALINGS):
+        with near(partial(bench.versions.counts, store.root), len(todo.photos)):
+            result = launched(options, todo, found, bench, run)
+        check(store, run, todo)
+        done = stages(result)
+        note(store, run, options, began, done)
+        again += sum(one.get("healed", 0) for one in done.values())
+        report = replace(reported(store, run, todo), healed=again)
+        if shard != (1, 1) or not report.blocks:
+            return report
+        try:
+            return published(bench, found, report, tell, anyway=ours.publish_anyway)
+        except Damaged:
+            spoiled = site.damaged(store, run, bench.versions)
+            for path in spoiled:
+                store.drop(path)
+            again += len(spoiled)
+    raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
+
+
+def published(
+    bench: Bench, found: Manifest, report: Report, tell: Tell, *, anyway: bool
+) -> Report:
+    """Publish a run, unless it shows less than what is published already.
+
+    Raises:
+        Damaged: if an artifact is.
+    """
+    store, better = bench.store, shown_before(bench.store)
+    if report.shown_share < min(LEAST_SHOWN, better) and not anyway:
+        words = (
+            f"the site stays as it is: it shows {better:.0%} of its photos, this run "
+            f"{report.shown_share:.0%}: mend what was rejected, or replace it by "
+            "`nostalgin build --publish-anyway`"
+        )
+        tell("held", words, shown=report.shown_share, before=better)
+        return replace(report, held=True)
+    site.publish(store, report.run, bench.versions, found.rows, title=found.title)
+    remember(store, report)
+    if "://" in store.root:
+        words = f"no site was written: build {store.root} where it is mounted"
+        tell("warning", f"warning: {words}", warning=words)
     return report
 
 
@@ -180,41 +209,6 @@ def write(built: Built, bench: Bench, run: str) -> None:
         ("rejections", built.rejections, rows.rejection_rows),
     ):
         _ = elements | f"Table {name}" >> WriteTable(store, run, name, of_each)
-
-
-def check(store: Store, run: str, todo: Plan) -> None:
-    """Insist that each photo and each block was made or rejected.
-
-    Raises:
-        Lost: if one was neither.
-    """
-    told = set(runs.read_column(store, run, "rejections", "key"))
-    photos = told.union(runs.read_column(store, run, "facades", "name"))
-    blocks = told.union(runs.read_column(store, run, "blocks", "block"))
-    lost = [ref.name for ref in todo.photos if ref.name not in photos]
-    lost += [task.block for task in todo.blocks if task.block not in blocks]
-    if lost:
-        raise Lost(
-            f"the runner lost {len(lost)} photos or blocks, {lost[0]} first: "
-            "build again; what was done is kept"
-        )
-
-
-def reported(store: Store, run: str, todo: Plan) -> Report:
-    """Sum up a run from its tables."""
-    facades = runs.read_column(store, run, "facades", "name")
-    seen = set(facades)
-    buildings = runs.read_column(store, run, "blocks", "buildings")
-    return Report(
-        run=run,
-        photos=len(todo.photos),
-        rejected_photos=sum(ref.name not in seen for ref in todo.photos),
-        facades=len(facades),
-        blocks=len(buildings),
-        buildings=sum(buildings),
-        assumed=sum(runs.read_column(store, run, "blocks", "assumed")),
-        rejections=tuple(runs.read_table(store, run, "rejections")),
-    )
 
 
 def note(

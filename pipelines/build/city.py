@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import apache_beam as beam
 from apache_beam import pvalue
 
+from pipelines.build.bench import Bench
 from pipelines.build.blocks import Assign, Model
 from pipelines.build.stages import (
-    Bench,
     FacadeRef,
     Inpaint,
     Matte,

@@ -45,6 +45,12 @@ def runner(options: PipelineOptions) -> FnApiRunner | None:
     return FnApiRunner(default_environment=workers)
 
 
+def in_process(options: PipelineOptions) -> bool:
+    """Tell whether this process does the work itself."""
+    near = options.view_as(StandardOptions).runner == EMBEDDED
+    return near and options.view_as(DirectOptions).direct_num_workers == 1
+
+
 def command() -> str:
     """Write what a shell is to start as a worker."""
     return f"{shlex.quote(sys.executable)} -m {WORKER}"

@@ -7,14 +7,13 @@ later run dies of it again.
 
 import atexit
 import contextlib
-import hashlib
 import os
 import pickle
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection, Pipe
 from typing import Any, Final
@@ -22,8 +21,7 @@ from typing import Any, Final
 from nostalgin_core.records import Rejection
 from pipelines.build import supervisor
 from pipelines.build.supervisor import ATTEMPTS, Died, Done, Failed, Limits
-from pipelines.store import Store, Unstored
-from pipelines.store.store import ARTIFACTS, key_of
+from pipelines.store import Aside, Unstored
 
 ASIDE: Final = "put aside"
 MOST_FILES: Final = 1 << 16  # that a process may well have open
@@ -125,50 +123,6 @@ class Pool:
 
 POOL: Final = Pool()
 atexit.register(POOL.end)
-
-
-@dataclass
-class Aside:
-    """Which elements ended their process, as the store remembers them."""
-
-    store: Store
-    version: str  # of all stages: another may do better
-    retry: bool = False  # as if there were none
-    _known: frozenset[str] | None = field(default=None, init=False, compare=False)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Let every process look for itself."""
-        return self.__dict__ | {"_known": None}
-
-    def of(self, stage: str, element: Any) -> Rejection | None:
-        """Tell why an element was put aside, if it was."""
-        if self._known is None:
-            names = () if self.retry else self.store.names(self._folder())
-            self._known = frozenset(names)
-        name = f"{self._key(stage, element)}.parquet"
-        if name not in self._known:
-            return None
-        verdict = self.store.verdict(f"{self._folder()}/{name}")
-        return verdict if isinstance(verdict, Rejection) else None
-
-    def put(self, stage: str, element: Any, why: Rejection) -> None:
-        """Remember an element."""
-        name = f"{self._key(stage, element)}.parquet"
-        self.store.keep(f"{self._folder()}/{name}", why)
-
-    def _folder(self) -> str:
-        return f"{ARTIFACTS}/aside/{self.version}"
-
-    def _key(self, stage: str, element: Any) -> str:
-        told = hashlib.sha256(spelt(element).encode(errors="surrogateescape"))
-        return key_of(stage, told.hexdigest())
-
-
-def spelt(element: Any) -> str:
-    """Write an element as text; of a group, as no order of arrival changes it."""
-    key, groups = element if isinstance(element, tuple) else (element, {})
-    told = {name: sorted(map(repr, groups[name])) for name in sorted(groups)}
-    return repr((key, told))
 
 
 @dataclass

@@ -32,7 +32,7 @@ class CityOptions(PipelineOptions):
             "--stage_seconds",
             type=float,
             default=most.seconds,
-            help="what a stage may take for one element; 0: in the worker's own process",
+            help="what a stage may take for one element; 0: it has no own process",
         )
         parser.add_argument(
             "--stage_gigabytes",

@@ -6,9 +6,7 @@ and a facade's number.
 """
 
 import hashlib
-import json
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -16,21 +14,16 @@ import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
 
-from nostalgin_core import inpaint, matte, photo, quantise, rectify, segment
+from nostalgin_core import inpaint, matte, quantise, rectify, segment
 from nostalgin_core.records import Elevation, Instance, Photo, Rejection, Seen
 from nostalgin_core.steps import rounded
 from pipelines import site
 from pipelines.build import artifacts
 from pipelines.build.attempt import Attempt
-from pipelines.build.isolation import Aside, Isolation
-from pipelines.build.supervisor import Limits
+from pipelines.build.bench import Bench
 from pipelines.index.plan import PhotoRef
-from pipelines.models import Models, Once
-from pipelines.store import Damaged, Store, tables
-from pipelines.store.store import key_of
-from pipelines.store.versions import Versions
-
-Make = Callable[[], pa.Table | Rejection]
+from pipelines.models import Once
+from pipelines.store import Store, tables
 
 
 @dataclass(frozen=True)
@@ -44,65 +37,6 @@ class FacadeRef:
     def key(self) -> str:
         """Name the facade in rejections."""
         return self.photo.name
-
-
-@dataclass(frozen=True)
-class Bench:
-    """Where a stage finds its input and leaves its output."""
-
-    store: Store
-    versions: Versions
-    models: Models
-    limits: Limits = field(default_factory=Limits)
-    retry: bool = False  # what ended its process in an earlier run
-    damaged: list[str] = field(default_factory=list, compare=False)  # met and dropped
-
-    def attempt(self, function: Callable[..., Any], stage: str, *tools: Any) -> Attempt:
-        """Have a stage's function work on elements, each where it can harm no other."""
-        return Attempt(Work(function, self, tools), stage, self._isolation())
-
-    def _isolation(self) -> Isolation | None:
-        if not self.limits.seconds:
-            return None
-        version = key_of(json.dumps(vars(self.versions)))[:16]
-        return Isolation(self.limits, Aside(self.store, version, self.retry))
-
-    def keep(self, path: str, make: Make) -> Rejection | None:
-        """Make an artifact unless it is there; tell its rejection, if it is one."""
-        try:
-            verdict = self.store.verdict(path)
-        except Damaged:
-            self.drop(path)
-            verdict = False
-        if verdict is False:
-            made = make()
-            self.store.keep(path, made)
-            return made if isinstance(made, Rejection) else None
-        return verdict if isinstance(verdict, Rejection) else None
-
-    def read(
-        self, path: str, again: Callable[[], Any], columns: Sequence[str] | None = None
-    ) -> pa.Table:
-        """Read an artifact, or some columns; a damaged one is made `again` first."""
-        try:
-            return self.store.read_table(path, columns)
-        except Damaged:
-            self.drop(path)
-            again()
-            return self.store.read_table(path, columns)
-
-    def drop(self, path: str) -> None:
-        """Drop a damaged artifact, and count it."""
-        self.store.drop(path)
-        self.damaged.append(path)
-
-    def network(self, name: str) -> Once:
-        """Name a network, to be loaded by the process that first calls it."""
-        return Once(self.models, name)
-
-    def decoded(self, ref: PhotoRef) -> Photo | Rejection:
-        """Read and decode a photo again: cheaper than carrying its pixels."""
-        return photo.decode(Store(ref.root).read_bytes(ref.name), name=ref.sha256[:16])
 
 
 @dataclass
@@ -168,24 +102,6 @@ class Inpaint(beam.PTransform):
         """Wire the stage."""
         network = self.bench.network("inpaint")
         return facades | self.bench.attempt(inpainted, "inpaint", network)
-
-
-@dataclass(frozen=True)
-class Work:
-    """A stage's function with its bench, and its network if it has one."""
-
-    function: Callable[..., Any]
-    bench: Bench
-    tools: tuple[Any, ...] = ()
-
-    def __call__(self, ref: Any) -> Any:
-        """Work on one element."""
-        return self.function(ref, self.bench, *self.tools)
-
-    @property
-    def damaged(self) -> list[str]:
-        """The artifacts that were found damaged, and made again."""
-        return self.bench.damaged
 
 
 def segmented(ref: PhotoRef, bench: Bench, network: Once) -> PhotoRef | Rejection:

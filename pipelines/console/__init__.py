@@ -7,6 +7,15 @@ It knows what there is to tell; none of those who tell know it. Open `voice` fir
 from pipelines.console.failure import errors, fail, unwritable
 from pipelines.console.hush import hushed
 from pipelines.console.progress import Watch
-from pipelines.console.voice import Voice, summed
+from pipelines.console.voice import Voice, indexed, summed
 
-__all__ = ["Voice", "Watch", "errors", "fail", "hushed", "summed", "unwritable"]
+__all__ = [
+    "Voice",
+    "Watch",
+    "errors",
+    "fail",
+    "hushed",
+    "indexed",
+    "summed",
+    "unwritable",
+]

@@ -10,6 +10,7 @@ from pipelines.console.failure import harmless
 
 if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.build import Report
+    from pipelines.index import Indexed
 
 MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
 
@@ -37,6 +38,9 @@ def summed(report: "Report", voice: Voice) -> None:
         voice.say("rejected", f"rejected {words}", **one)
     for reason, count in () if voice.machine else report.reasons():
         voice.say("reason", f"{count} times rejected by {reason}")
+    if report.healed:
+        words = f"{report.healed} damaged artifacts were made again"
+        voice.say("healed", words, artifacts=report.healed)
     voice.say(
         "done",
         f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
@@ -52,3 +56,26 @@ def summed(report: "Report", voice: Voice) -> None:
         assumed=report.assumed,
         reasons=dict(report.reasons()),
     )
+
+
+def indexed(made: "Indexed", city: str, voice: Voice) -> None:
+    """Tell what came of an index."""
+    for warning in made.warnings:
+        voice.say("warning", f"warning: {warning}", warning=warning)
+    for one in made.rejections:
+        words = f"rejected {one.key}: {one.reason}: {one.detail}"
+        voice.say("rejected", words, key=one.key, reason=one.reason, detail=one.detail)
+    voice.say(
+        "done",
+        f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
+        f"{made.without_photo} fronts without a photo: {city}/manifest.csv",
+        photos=made.photos,
+        fronts=made.fronts,
+        blocks=made.blocks,
+        fronts_without_photo=made.without_photo,
+        photos_without_front=list(made.without_front),
+    )
+    if made.astray:
+        count = len(made.without_front)
+        words = f"{count} of {made.photos} photos found no place: is it their list?"
+        voice.say("homeless", words, photos_without_front=count)

@@ -22,6 +22,7 @@ SUFFIXES: Final = (
 WRITTEN: Final = ("site", "artifacts", "runs")  # by build, in the city folder
 LONGEST: Final = 48  # letters of a folder that names a block
 # 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
+MOST_HOMELESS: Final = 0.5  # of the photos
 BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
 
 
@@ -42,9 +43,9 @@ class Indexed:
     warnings: tuple[str, ...]
 
     @property
-    def homeless_share(self) -> float:
-        """Tell which share of the photos found no place in any block."""
-        return len(self.without_front) / max(self.photos, 1)
+    def astray(self) -> bool:
+        """Tell whether most photos found no place: the list may be another's."""
+        return len(self.without_front) > MOST_HOMELESS * self.photos
 
 
 def index(

@@ -5,8 +5,17 @@ Open `publish` first.
 """
 
 from pipelines.site.folder import Foreign
-from pipelines.site.publish import claim, publish
+from pipelines.site.publish import CURRENT, claim, damaged, publish
 from pipelines.site.record import record
 from pipelines.site.site import ViewerMissingError, thumbnail
 
-__all__ = ["Foreign", "ViewerMissingError", "claim", "publish", "record", "thumbnail"]
+__all__ = [
+    "CURRENT",
+    "Foreign",
+    "ViewerMissingError",
+    "claim",
+    "damaged",
+    "publish",
+    "record",
+    "thumbnail",
+]

@@ -2,17 +2,22 @@
 
     SITE/.nostalgin.json        the names of all files that were written, relative
 
-The record is written before the files that it names, so that a publishing which was cut
-off is known as our own the next time. What it does not name is a stranger's: it is
-neither changed nor removed, and where it stands in the way nothing is written at all.
+Files that were replaced stay until the next publishing: whoever reads the city that
+was there before reads it to its end. The record is written before the files that it
+names, so that a publishing which was cut off is known as our own the next time. What it
+does not name is a stranger's: it is neither changed nor removed, and where it stands in
+the way nothing is written at all.
 """
 
+import contextlib
 import glob
 import json
 import os
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 from typing import Final
+
+from pipelines.store import durable
 
 RECORD: Final = ".nostalgin.json"
 
@@ -33,16 +38,25 @@ def written(root: Path) -> frozenset[str]:
         root.is_dir() and not any(map(a_stranger, root.iterdir()))
     ):
         return frozenset()
-    try:
-        names = json.loads((root / RECORD).read_bytes())
-    except (OSError, ValueError):
-        names = None
-    if not isinstance(names, list) or not all(map(inside, names)):
-        raise Foreign(
-            f"{root} holds files of which no record says that nostalgin wrote them: "
-            "move them elsewhere, and build again"
-        )
-    return frozenset(names)
+    now, before = recorded(root)
+    return now | before
+
+
+def recorded(root: Path) -> tuple[frozenset[str], frozenset[str]]:
+    """Read which files in a folder are the city, and which the one before it.
+
+    Raises:
+        Foreign: if there is no such record.
+    """
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+        told = json.loads((root / RECORD).read_bytes())
+        now, before = told["now"], told["before"]
+        if all(map(inside, [*now, *before])):
+            return frozenset(now), frozenset(before)
+    raise Foreign(
+        f"{root} holds files of which no record says that nostalgin wrote them: "
+        "move them elsewhere, and build again"
+    )
 
 
 def a_stranger(path: Path) -> bool:
@@ -69,10 +83,12 @@ class Folder:
         """
         self._root, self._names = root, frozenset(names)
         self._before = written(root)
+        known = (root / RECORD).exists()
+        self._last = recorded(root)[0] if known else frozenset[str]()
         for name in sorted(self._names):
             self._free(name)
         root.mkdir(parents=True, exist_ok=True)
-        self._record(self._before | self._names)
+        self._record(self._last, self._before | self._names)
 
     def write(self, name: str, data: bytes) -> None:
         """Put a file in its place in one move; one that is already the same stays.
@@ -86,16 +102,17 @@ class Folder:
         self._put(name, data)
 
     def prune(self) -> None:
-        """Remove what we wrote earlier and not this time."""
+        """Remove what we wrote before the last time, and not since."""
+        kept = self._names | self._last
         for name in sorted(self._before | self._names):
             path = self._root / name
             if any(folder.is_symlink() for folder in self._folders(name)):
                 continue
-            old = [] if name in self._names else [path]
+            old = [] if name in kept else [path]
             for one in (*old, *path.parent.glob(partial(glob.escape(path.name), "*"))):
                 if one.is_file() and not one.is_symlink():
                     one.unlink()
-        self._record(self._names)
+        self._record(self._names, self._last - self._names)
 
     def _free(self, name: str) -> None:
         for folder in self._folders(name):
@@ -111,8 +128,9 @@ class Folder:
     def _folders(self, name: str) -> list[Path]:
         return [self._root / one for one in PurePosixPath(name).parents]
 
-    def _record(self, names: Iterable[str]) -> None:
-        self._put(RECORD, json.dumps(sorted(names), indent=0).encode())
+    def _record(self, now: Iterable[str], before: Iterable[str]) -> None:
+        told = {"now": sorted(now), "before": sorted(before)}
+        self._put(RECORD, json.dumps(told, indent=0).encode())
 
     def _put(self, name: str, data: bytes) -> None:
         path = self._root / name
@@ -121,11 +139,7 @@ class Folder:
             return
         beside = path.with_name(partial(path.name, str(os.getpid())))
         beside.unlink(missing_ok=True)
-        with beside.open("xb") as file:  # never through a link
-            file.write(data)
-            if name == RECORD:  # on which all else rests, after a power cut too
-                file.flush()
-                os.fsync(file.fileno())
+        durable(beside, data)  # never through a link
         beside.replace(path)
 
 

@@ -1,5 +1,6 @@
 """From a run's tables to the site that the world sees."""
 
+import hashlib
 import json
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +16,7 @@ from pipelines.index.manifest import Row, natural
 from pipelines.index.plan import rooted
 from pipelines.site import site
 from pipelines.site.folder import written
-from pipelines.store import Store, runs
+from pipelines.store import Damaged, Store, runs
 from pipelines.store.versions import Versions
 
 CURRENT: Final = "CURRENT"
@@ -39,6 +40,9 @@ def publish(
 
     Without a `title` the city is called after its folder. A store elsewhere gets the
     pointer alone: `nostalgin build` on a machine that mounts it writes the site.
+
+    Raises:
+        Damaged: if an artifact is, before anything is written.
     """
     if "://" not in store.root:
         folder, blocks = Path(store.root), runs.read_table(store, run, "blocks")
@@ -79,7 +83,7 @@ def models(
         made.append(
             site.BlockModel(
                 name=row["block"],
-                glb=partial(cell, store, row["model"], "glb"),
+                glb=partial(whole, store, row["model"], row["sha256"]),
                 record=record,
                 low_m=tuple(row["low_m"]),
                 high_m=tuple(row["high_m"]),
@@ -152,6 +156,39 @@ def reasons(
 def cell(store: Store, path: str, column: str) -> bytes:
     """Read the one cell that an artifact holds."""
     return store.read_table(path, [column]).to_pylist()[0][column]
+
+
+def whole(store: Store, path: str, sha256: str) -> bytes:
+    """Read a model, and insist that it is the one that the run has made.
+
+    Raises:
+        Damaged: if it is another.
+    """
+    data = cell(store, path, "glb")
+    if hashlib.sha256(data).hexdigest() != sha256:
+        raise Damaged("its GLB has another SHA-256 than the run says", path)
+    return data
+
+
+def damaged(store: Store, run: str, versions: Versions) -> list[str]:
+    """List what a run would publish and can't: artifacts that are damaged or gone."""
+    models = runs.read_table(store, run, "blocks")
+    photos = runs.read_table(store, run, "photos")
+    keys = [versions.thumbnail_key(row["sha256"]) for row in photos]
+    small = [versions.path("thumbnail", key) for key in dict.fromkeys(keys)]
+    found = []
+    for path, sha256 in (
+        *((row["model"], row["sha256"]) for row in models),
+        *((path, "") for path in small),
+    ):
+        try:
+            if sha256:
+                whole(store, path, sha256)
+            elif store.verdict(path) is True:
+                store.read_table(path)
+        except Damaged:
+            found.append(path)
+    return found
 
 
 class Thumbnails(Mapping[str, bytes]):

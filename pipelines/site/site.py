@@ -3,12 +3,14 @@
     index.html, assets/            the viewer, built from `viewer/`
     blocks/<block>-<sha8>.glb      models, named by content
     photos/<key>.webp              thumbnails of the photographs
+    tileset-<sha8>.json            3D Tiles, as site.json names them
     site.json                      what is known of blocks and buildings
-    tileset.json                   3D Tiles; swapped in last
+    tileset.json                   the same 3D Tiles, under the name that others know
 
-Files that others name come first and the tileset last, each written beside its place
-and moved into it, so that a reader never meets half a city. What an earlier city left
-behind is removed at the end, and nothing that we did not write (`folder`).
+What others name is named by its content and comes first, and stays until the city after
+the next; site.json and tileset.json come last, each in one move. So a reader meets the
+one city or the other, never half of both. Nothing is removed that we did not write
+(`folder`).
 """
 
 import hashlib
@@ -95,13 +97,16 @@ def assemble(
         city.Tile(uri, one.low_m, one.high_m, one.origin_m, one.place, one.turn_rad)
         for uri, one in models.items()
     ]
+    tileset = _text(city.tileset(tiles, place=place))
+    named = f"tileset-{hashlib.sha256(tileset).hexdigest()[:8]}.json"
     record = {
         "title": title,
+        "tileset": named,
         "legend": legend(),
         "blocks": [_block(uri, one, files) for uri, one in models.items()],
     }
     assets = {f"assets/{p.name}": p for p in sorted((viewer / "assets").iterdir())}
-    site = Folder(destination, [*assets, *files.values(), *models, *PAGES])
+    site = Folder(destination, [*assets, *files.values(), *models, named, *PAGES])
     for name, path in assets.items():
         site.write(name, path.read_bytes())
     for key, data in photos.items():
@@ -109,8 +114,9 @@ def assemble(
     for uri, one in models.items():
         site.write(uri, content(one))
     site.write("index.html", index.read_bytes())
+    site.write(named, tileset)
     site.write("site.json", _text(record))
-    site.write("tileset.json", _text(city.tileset(tiles, place=place)))
+    site.write("tileset.json", tileset)
     site.prune()
 
 

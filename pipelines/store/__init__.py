@@ -5,7 +5,19 @@ Open `store` first. Beside the door stand `versions`, which names what is kept b
 code and parameters that made it, `runs` and `tables`.
 """
 
+from pipelines.store.aside import Aside
+from pipelines.store.lock import Busy, held
 from pipelines.store.seal import Damaged
-from pipelines.store.store import Store, Unstored, parquet_bytes, textual
+from pipelines.store.store import Store, Unstored, durable, parquet_bytes, textual
 
-__all__ = ["Damaged", "Store", "Unstored", "parquet_bytes", "textual"]
+__all__ = [
+    "Aside",
+    "Busy",
+    "Damaged",
+    "Store",
+    "Unstored",
+    "durable",
+    "held",
+    "parquet_bytes",
+    "textual",
+]

@@ -1,4 +1,4 @@
-// The city: its records (site.json) and its models (tileset.json), in one level frame.
+// The city: its records (site.json) and its models (3D Tiles), in one level frame.
 //
 // The frame is the first block's: x east, y up, z south, in metres.
 
@@ -129,12 +129,12 @@ export class City {
   }
 }
 
-/** Reads site.json and starts to load tileset.json, both beside the page. */
+/** Reads site.json and starts to load the tileset that it names, both beside the page. */
 export async function open(base = '') {
   const response = await fetch(`${base}site.json`);
   if (!response.ok) throw new Error(`site.json: ${response.status}`);
   const record = await response.json();
-  const tiles = new TilesRenderer(new URL(`${base}tileset.json`, location.href).href);
+  const tiles = new TilesRenderer(new URL(`${base}${record.tileset}`, location.href).href);
   tiles.registerPlugin(
     new GLTFExtensionsPlugin({ plugins: [(parser) => new EvidenceVariant(parser)] }),
   );

@@ -1,9 +1,7 @@
 """The pipeline on a painted city: same bytes however it is run, and nothing lost."""
 
-import hashlib
 import json
 import shutil
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +10,7 @@ import pytest
 
 from nostalgin_core import reconstruct
 from nostalgin_core.steps import Networks
-from pipelines.build.build import Lost, Report, build
-from pipelines.build.options import options
+from pipelines.build import Lost
 from pipelines.index import manifest
 from pipelines.models import Models
 from pipelines.site.folder import Foreign
@@ -21,37 +18,9 @@ from pipelines.site.publish import publish
 from pipelines.store.store import Store
 from pipelines.store.versions import Versions
 from tests.pipelines import painted
+from tests.pipelines.cities import artifacts, built, copied, tree
 
 TWO_PROCESSES = ("--direct_num_workers=2",)
-
-
-def built(city: Path, beam: Sequence[str] = (), shard: str = "") -> Report:
-    models = str(city.parent / "models")
-    chosen = options(str(city), models=models, beam=beam, shard=shard)
-    return build(chosen)
-
-
-def tree(city: Path) -> dict[str, str]:
-    """Hash every file of a city, but for the one that tells the time."""
-    return {
-        path.relative_to(city).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(city.rglob("*"))
-        if path.is_file() and path.name != "run.json"
-    }
-
-
-def artifacts(city: Path, stage: str) -> list[Path]:
-    return sorted((city / "artifacts" / stage).rglob("*.parquet"))
-
-
-def copied(city: Path, folder: Path) -> Path:
-    """Copy an unbuilt city with its networks; the photos stay where they are."""
-    shutil.copytree(city.parent / "models", folder / "models")
-    fresh = folder / "city"
-    fresh.mkdir()
-    for name in (manifest.CSV, manifest.PARQUET):
-        shutil.copy(city / name, fresh / name)
-    return fresh
 
 
 @pytest.fixture(scope="module")

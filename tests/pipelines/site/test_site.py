@@ -101,6 +101,8 @@ def test_a_new_model_takes_the_place_of_the_old(tmp_path: Path, viewer: Path) ->
     old = assembled(folder, viewer, model())["blocks"][0]["uri"]
     new = assembled(folder, viewer, model(glb=b"glTF2"), photos={})["blocks"][0]["uri"]
     assert old != new
+    assert (folder / old).exists()  # whoever reads the old city reads it to its end
+    assembled(folder, viewer, model(glb=b"glTF2"), photos={})
     assert not (folder / old).exists()
     assert list((folder / "photos").glob("*")) == []
 
@@ -129,7 +131,7 @@ def test_a_link_that_leads_out_is_refused(tmp_path: Path, viewer: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "site").mkdir()
     (tmp_path / "site/blocks").symlink_to(tmp_path / "elsewhere")
-    (tmp_path / "site" / RECORD).write_text("[]")
+    (tmp_path / "site" / RECORD).write_text('{"now": [], "before": []}')
     with pytest.raises(Foreign, match="leads out"):
         assembled(tmp_path / "site", viewer, model())
     assert list((tmp_path / "elsewhere").iterdir()) == []

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from nostalgin_core.records import Assignment, Rejection
-from pipelines.store import tables
+from pipelines.store import Damaged, tables
 from pipelines.store.store import Store, key_of, parquet_bytes
 
 ROWS = tables.table(Assignment, [Assignment("993-11-2", "k", 0, 0.93)])
@@ -53,11 +53,12 @@ def test_the_same_rows_give_the_same_bytes(store: Store) -> None:
 
 
 @pytest.mark.parametrize("kept", [0, 4, 100])
-def test_an_artifact_that_was_cut_short_is_made_again(store: Store, kept: int) -> None:
+def test_an_artifact_that_was_cut_short_is_damaged(store: Store, kept: int) -> None:
     store.keep("a.parquet", ROWS)
     path = Path(store.root) / "a.parquet"
     path.write_bytes(path.read_bytes()[:kept])
-    assert store.verdict("a.parquet") is False
+    with pytest.raises(Damaged):
+        store.verdict("a.parquet")
 
 
 def test_a_folder_whose_name_is_no_text_is_refused(tmp_path: Path) -> None:

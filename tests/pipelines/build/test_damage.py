@@ -1,0 +1,125 @@
+"""What was damaged is made again; what is worse takes nothing's place."""
+
+import json
+import shutil
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from pipelines.store.store import Store
+from tests.pipelines import painted
+from tests.pipelines.cities import artifacts, built, copied, tree
+
+HERE = ("--stage_seconds=0",)  # no process of its own: it is faster
+STAGES = ("segment", "matte", "rectify", "inpaint", "block", "thumbnail")
+
+
+@pytest.fixture(scope="module")
+def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A painted city that was built once."""
+    city = painted.write_city(tmp_path_factory.mktemp("painted"))
+    built(city, HERE)
+    return city
+
+
+def twin(city: Path, folder: Path) -> Path:
+    """Copy a city with all that it has."""
+    other = copied(city, folder)
+    shutil.copytree(city, other, dirs_exist_ok=True)
+    return other
+
+
+def spoil(path: Path) -> None:
+    """Zero 64 bytes in the middle of a file's data."""
+    data = path.read_bytes()
+    at = len(data) // 3
+    path.write_bytes(data[:at] + bytes(64) + data[at + 64 :])
+
+
+@pytest.mark.parametrize("stage", [*STAGES, ""])
+def test_damage_heals(city: Path, tmp_path: Path, stage: str) -> None:
+    other = twin(city, tmp_path)
+    for path in artifacts(other, stage):
+        spoil(path)
+    shutil.rmtree(other / "site")
+    report = built(other, HERE)
+    assert tree(other / "site") == tree(city / "site")
+    assert report.rejections == ()
+    read = (
+        "block",
+        "thumbnail",
+        "",
+    )  # of the others all is there that was made of them
+    assert (report.healed > 0) is (stage in read)
+
+
+def test_what_is_made_from_damage_is_made_from_what_was_healed(
+    city: Path, tmp_path: Path
+) -> None:
+    other = twin(city, tmp_path)
+    for path in artifacts(other, ""):
+        if path.parts[-4] in ("segment", "rectify", "inpaint"):
+            spoil(path)
+        else:
+            path.unlink()
+    assert built(other, HERE).healed
+    for folder in ("site", "runs"):  # what no wall wears was not looked at
+        assert tree(other / folder) == tree(city / folder)
+
+
+def test_a_city_that_shows_less_takes_no_better_one_s_place(
+    tmp_path: Path,
+) -> None:
+    other = painted.write_city(tmp_path)
+    assert not built(other, HERE).held
+    site, current = tree(other / "site"), (other / "CURRENT").read_text()
+    for path in (other.parent / "photos").iterdir():
+        path.write_bytes(b"")
+    for _ in range(2):  # the second finds the first one's tables, and is not misled
+        report = built(other, HERE)
+        assert (report.held, report.rejected_photos) == (True, 4)
+        assert tree(other / "site") == site
+        assert (other / "CURRENT").read_text() == current
+    assert not built(other, (*HERE, "--publish_anyway")).held
+    assert tree(other / "site") != site
+
+
+def test_a_reader_meets_one_city_or_the_other_while_they_change(
+    city: Path, tmp_path: Path
+) -> None:
+    other = twin(city, tmp_path)
+    listed = other / "manifest.csv"
+    stop, torn, read = threading.Event(), [], []
+
+    def reader() -> None:
+        while not stop.is_set():
+            record = json.loads((other / "site/site.json").read_text())
+            tiles = json.loads((other / "site" / record["tileset"]).read_text())
+            named = [tile["content"]["uri"] for tile in tiles["root"]["children"]]
+            told = [block["uri"] for block in record["blocks"]]
+            there = all((other / "site" / uri).is_file() for uri in named)
+            torn.extend([told] if sorted(told) != sorted(named) or not there else [])
+            read.append(told)
+
+    thread = threading.Thread(target=reader)
+    thread.start()
+    for before, after in (("Elm", "Ash"), ("Ash", "Fir")):
+        listed.write_text(listed.read_text().replace(before, after))
+        built(other, HERE)
+    stop.set()
+    thread.join()
+    assert torn == []
+    assert len({tuple(told) for told in read}) == 3
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are listed in /proc")
+def test_a_stage_that_kills_its_process_stops_no_other_photo(
+    city: Path, tmp_path: Path
+) -> None:
+    other = copied(city, tmp_path)
+    report = built(other, ("--stage_gigabytes=0.05",))  # too little to begin with
+    assert report.rejected_photos == 4
+    assert {one["reason"] for one in report.rejections} <= {"put aside", "crashed"}
+    assert Store(str(other)).exists("CURRENT")

@@ -1,0 +1,39 @@
+"""Cities that tests build, look at and spoil."""
+
+import hashlib
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from pipelines import build
+from pipelines.build import Report
+from pipelines.index import manifest
+
+
+def built(city: Path, beam: Sequence[str] = (), shard: str = "") -> Report:
+    models = str(city.parent / "models")
+    chosen = build.options(str(city), models=models, beam=beam, shard=shard)
+    return build.build(chosen)
+
+
+def tree(city: Path) -> dict[str, str]:
+    """Hash every file of a city, but for the lock and the one that tells the time."""
+    return {
+        path.relative_to(city).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(city.rglob("*"))
+        if path.is_file() and path.name not in ("run.json", ".lock")
+    }
+
+
+def artifacts(city: Path, stage: str) -> list[Path]:
+    return sorted((city / "artifacts" / stage).rglob("*.parquet"))
+
+
+def copied(city: Path, folder: Path) -> Path:
+    """Copy an unbuilt city with its networks; the photos stay where they are."""
+    shutil.copytree(city.parent / "models", folder / "models")
+    fresh = folder / "city"
+    fresh.mkdir()
+    for name in (manifest.CSV, manifest.PARQUET):
+        shutil.copy(city / name, fresh / name)
+    return fresh
