@@ -18,7 +18,6 @@ from nostalgin_core import steps
 from pipelines.build.build import build
 from pipelines.build.options import options
 from pipelines.console.hush import hushed
-from pipelines.console.voice import Voice
 from pipelines.demo import painted
 from pipelines.index.index import index
 from pipelines.models import Models, one_thread
@@ -53,7 +52,7 @@ def main(count: int, workers: int) -> None:
         cpu, wall = cpu_seconds(), time.perf_counter()
         with hushed(console):
             beam = [f"--direct_num_workers={workers}"]
-            build(options(folder, beam=beam), Voice(Console(quiet=True)))
+            build(options(folder, beam=beam))
         cpu, wall = cpu_seconds() - cpu, time.perf_counter() - wall
         rate = 60 * len(kept) / wall
         print(f"build  {len(kept)} photos, {workers} workers: {cpu:.1f} CPU s")
