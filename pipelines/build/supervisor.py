@@ -9,6 +9,7 @@ twice is given back as such. When the worker is gone, so are both.
 
 import contextlib
 import ctypes
+import logging
 import os
 import pickle
 import resource
@@ -199,6 +200,7 @@ def healed(function: Function) -> int:
 
 def main() -> None:
     """Serve the worker at the other end of a connection that was left open for us."""
+    logging.getLogger().setLevel(logging.ERROR)  # Beam warns while it is imported
     import pipelines.build.blocks  # noqa: F401 - what all children will need
 
     serve(Connection(int(sys.argv[1])))

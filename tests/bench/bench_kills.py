@@ -1,7 +1,7 @@
-"""Kill builds at any moment, build again, and print what was lost: nothing, or it fails.
+"""Kill builds at any moment, build again, and print what was lost.
 
-Run with `python tests/bench/bench_kills.py [KILLS, default 51]`. A painted city is built
-by two workers, by two shards at once or by one process; the driver, one of its
+Run with `python tests/bench/bench_kills.py [KILLS, default 51]`. A painted city is
+built by two workers, by two shards at once or by one process; the driver, one of its
 descendants (a worker of Beam, a supervisor, a stage's child) or a shard is killed at a
 moment drawn from a seed. Then it is built to its end. Printed are, for each kind, how
 many ended with the bytes of an undisturbed build, how many artifacts were there after
@@ -10,7 +10,6 @@ the kill, how many were made the second time, and how many of those were there a
 
 import contextlib
 import os
-import random
 import shutil
 import signal
 import subprocess
@@ -20,6 +19,8 @@ import time
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
 
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, copied, tree
@@ -31,7 +32,7 @@ WORKERS = "--direct_num_workers=2"
 
 def main(kills: int) -> None:
     """Build once undisturbed, then kill."""
-    rng = random.Random(SEED)
+    rng = np.random.default_rng(SEED)
     told: dict[str, list[tuple[bool, int, int, int]]] = defaultdict(list)
     with tempfile.TemporaryDirectory() as folder:
         city = painted.write_city(Path(folder) / "first")
@@ -70,18 +71,18 @@ def ended(*processes: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-def disturbed(city: Path, kind: str, after: float, rng: random.Random) -> None:
+def disturbed(city: Path, kind: str, after: float, rng: np.random.Generator) -> None:
     """Build, and kill somebody after so many seconds."""
     if kind == "shard":
         both = [start(city, (f"--shard={k}/2",)) for k in (1, 2)]
         time.sleep(after)
-        rng.choice(both).kill()
+        both[rng.integers(2)].kill()
         ended(*both)
         return
     driver = start(city, (WORKERS,))
     time.sleep(after)
     victims = descendants(driver.pid) if kind == "worker" else []
-    victim = rng.choice(sorted(victims)) if victims else driver.pid
+    victim = int(rng.choice(sorted(victims))) if victims else driver.pid
     with contextlib.suppress(ProcessLookupError):
         os.kill(victim, signal.SIGKILL)
     try:
