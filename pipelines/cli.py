@@ -10,19 +10,24 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import Voice, errors, examples, fail, unwritable
+from pipelines import bounded
+from pipelines.console import (
+    MOST_HOMELESS,
+    Voice,
+    errors,
+    examples,
+    fail,
+    tell_indexed,
+    unwritable,
+)
 from pipelines.evaluate import commands
 from pipelines.launch import built, told
 
-if TYPE_CHECKING:  # it is slow to load
-    from pipelines.index import Indexed
-
 TOO_MANY_REJECTIONS: Final = 3
-MOST_HOMELESS: Final = 0.5  # of the photos; with more, the list is another's
 MOST_WORKERS: Final = 4  # of the demo; each holds both networks
 
 app = typer.Typer(
@@ -81,7 +86,7 @@ def explain_command(
     from pipelines import models as shelf
 
     try:
-        data = photo.read_bytes()
+        data = bounded.read(photo, bounded.PHOTO_BYTES)
     except OSError as problem:
         raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
     try:
@@ -146,32 +151,9 @@ def index_command(
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
-    tell_index(made, city, voice)
+    tell_indexed(made, city, voice)
     if made.homeless_share > MOST_HOMELESS:
         raise typer.Exit(TOO_MANY_REJECTIONS)
-
-
-def tell_index(made: "Indexed", city: str, voice: Voice) -> None:
-    """Tell what came of an index."""
-    for warning in made.warnings:
-        voice.say("warning", f"warning: {warning}", warning=warning)
-    for one in made.rejections:
-        words = f"rejected {one.key}: {one.reason}: {one.detail}"
-        voice.say("rejected", words, key=one.key, reason=one.reason, detail=one.detail)
-    voice.say(
-        "done",
-        f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
-        f"{made.without_photo} fronts without a photo: {city}/manifest.csv",
-        photos=made.photos,
-        fronts=made.fronts,
-        blocks=made.blocks,
-        fronts_without_photo=made.without_photo,
-        photos_without_front=list(made.without_front),
-    )
-    if made.homeless_share > MOST_HOMELESS:
-        count = len(made.without_front)
-        words = f"{count} of {made.photos} photos found no place: is it their list?"
-        voice.say("homeless", words, photos_without_front=count)
 
 
 @app.command(
@@ -185,6 +167,10 @@ def build_command(
     *,
     shard: Annotated[str, typer.Option(help="Part of the blocks, as 3/16.")] = "",
     models: ModelsFolder = None,
+    allow_scheme: Annotated[
+        list[str] | None,
+        typer.Option(help="Let the manifest's roots be gs://... ; may be repeated."),
+    ] = None,
     max_rejected: Annotated[
         float,
         typer.Option(
@@ -201,8 +187,8 @@ def build_command(
     was. All other options go to Beam.
     """
     voice = Voice(errors, machine=json_lines)
-    folder = str(models or "")
-    report = built(city, voice, models=folder, shard=shard, beam=context.args)
+    asked = {"models": str(models or ""), "shard": shard, "schemes": allow_scheme or ()}
+    report = built(city, voice, **asked, beam=context.args)
     whole = bool(report.blocks and report.photos)  # what no photo shows is assumed
     if report.rejected_share > max_rejected or not (whole or shard):
         raise typer.Exit(TOO_MANY_REJECTIONS)

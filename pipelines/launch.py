@@ -16,7 +16,12 @@ if TYPE_CHECKING:  # both are slow to load
 
 
 def told(
-    city: str, *, models: str = "", shard: str = "", beam: Sequence[str] = ()
+    city: str,
+    *,
+    models: str = "",
+    shard: str = "",
+    schemes: Sequence[str] = (),
+    beam: Sequence[str] = (),
 ) -> "PipelineOptions":
     """Gather a build's options; one that makes no sense is wrong usage."""
     from pipelines.models import one_thread
@@ -26,7 +31,8 @@ def told(
     from pipelines import build
 
     try:
-        return build.options(city, models=models, shard=shard, beam=beam)
+        ours = {"models": models, "shard": shard, "schemes": schemes}
+        return build.options(city, **ours, beam=beam)
     except ValueError as problem:
         raise typer.BadParameter(str(problem)) from problem
 

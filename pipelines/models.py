@@ -9,6 +9,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
+from pipelines import bounded
+
 LOCK: Final = "models.lock"
 NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
@@ -34,9 +36,13 @@ class Models:
         if not path.is_file():
             raise Unlocked(f"{self.folder} has no {LOCK}: name a folder that has one")
         try:
-            lock = json.loads(path.read_bytes())
-        except ValueError as problem:
-            raise Unlocked(f"{path} is no JSON ({problem})") from problem
+            lock = json.loads(bounded.read(path, bounded.LOCK_BYTES))
+        except OSError as problem:
+            why = problem.strerror
+            raise Unlocked(f"{path}: {why}; name a folder with a lock") from problem
+        except (ValueError, RecursionError) as problem:
+            why = str(problem)
+            raise Unlocked(f"{path} is no JSON ({why}): mend it") from problem
         if not isinstance(lock, dict) or not all(
             isinstance(one, str) for one in lock.values()
         ):
@@ -61,7 +67,11 @@ class Models:
         path = Path(self.folder) / f"{name}.onnx"
         if not path.is_file():
             raise Unlocked(f"{path} is missing: name a folder that has it")
-        data = path.read_bytes()
+        try:
+            data = bounded.read(path, bounded.NETWORK_BYTES)
+        except OSError as problem:
+            why = problem.strerror
+            raise Unlocked(f"{path}: {why}; name a folder that has it") from problem
         if hashlib.sha256(data).hexdigest() != wanted:
             raise Unlocked(
                 f"{path} is not the file that {LOCK} names: install the package again, "

@@ -25,6 +25,7 @@ from pipelines.build.stages import Bench
 from pipelines.index import manifest
 from pipelines.index.manifest import Manifest, Unusable
 from pipelines.index.plan import Plan, plan
+from pipelines.index.roots import located
 from pipelines.models import NETWORKS, Models, one_thread
 from pipelines.store import Store, Unstored, runs
 from pipelines.store.versions import Versions
@@ -93,7 +94,9 @@ def build(
     one_thread()
     ours = options.view_as(CityOptions)
     store, shard = Store(ours.city), part(ours.shard)
+    schemes = [one for one in ours.allow_schemes.split(",") if one]
     found = manifest.rewrite(store, manifest.read(store))
+    found = located(found, store.root, schemes)
     for warning in found.warnings:
         tell("warning", f"warning: {warning}", warning=warning)
     models = Models(ours.models) if ours.models else Models()
@@ -105,7 +108,8 @@ def build(
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    run = runs.run_id(found.sha256, bench.versions, ours.shard)
+    asked = " ".join([ours.shard, *schemes])
+    run = runs.run_id(found.sha256, bench.versions, asked)
     counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)

@@ -1,6 +1,7 @@
 """What a build is told, as Beam options, so that any runner's launcher can tell it."""
 
 import argparse
+import re
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -13,7 +14,8 @@ from apache_beam.runners.runner import create_runner
 
 from pipelines.build.embedded import EMBEDDED
 
-OURS: Final = ("--city", "--models", "--shard")
+SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")  # RFC 3986, section 3.1
+OURS: Final = ("--city", "--models", "--shard", "--allow_schemes")
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
 
@@ -26,19 +28,27 @@ class CityOptions(PipelineOptions):
         parser.add_argument("--city", help="the city folder")
         parser.add_argument("--models", default="", help="folder of other networks")
         parser.add_argument("--shard", default="", help="part of the blocks, as 3/16")
+        parser.add_argument("--allow_schemes", default="", help="of roots, as gs,s3")
 
 
 def options(
-    city: str, *, models: str = "", shard: str = "", beam: Sequence[str] = ()
+    city: str,
+    *,
+    models: str = "",
+    shard: str = "",
+    schemes: Sequence[str] = (),
+    beam: Sequence[str] = (),
 ) -> PipelineOptions:
     """Gather options, with the embedded runner for `DirectRunner` and for none.
 
     Raises:
-        ValueError: if the shard is not k/n with 1 <= k <= n, if there is no such
-            runner, if nobody knows one of Beam's options, or for less than no workers.
+        ValueError: if the shard is not k/n with 1 <= k <= n, if a scheme is none, if
+            there is no such runner, if nobody knows one of Beam's options, or for less
+            than no workers.
     """
     part(shard)
-    ours = dict(zip(OURS, (city, models, shard), strict=True))
+    told = (city, models, shard, ",".join(sorted(set(map(scheme, schemes)))))
+    ours = dict(zip(OURS, told, strict=True))
     twice = [one for one in beam if one.partition("=")[0] in ours]
     if twice:
         raise ValueError(f"{twice[0]}: this command sets it, and Beam takes none")
@@ -78,6 +88,18 @@ def known(runner: str, beam: Sequence[str]) -> None:
     strangers = parser.parse_known_args(list(beam))[1]
     if strangers:
         raise ValueError(f"{strangers[0]}: neither nostalgin nor Beam knows it")
+
+
+def scheme(written: str) -> str:
+    """Read "GS" or "gs://" as gs.
+
+    Raises:
+        ValueError: if no URI begins so.
+    """
+    name = written.casefold().removesuffix("://")
+    if not SCHEME.fullmatch(name):
+        raise ValueError(f"--allow-scheme {written}: write it as gs, without a path")
+    return name
 
 
 def part(shard: str) -> tuple[int, int]:

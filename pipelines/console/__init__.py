@@ -7,6 +7,16 @@ It knows what there is to tell; none of those who tell know it. Open `voice` fir
 from pipelines.console.failure import errors, fail, unwritable
 from pipelines.console.hush import hushed
 from pipelines.console.progress import Watch
-from pipelines.console.voice import Voice, summed
+from pipelines.console.voice import MOST_HOMELESS, Voice, summed, tell_indexed
 
-__all__ = ["Voice", "Watch", "errors", "fail", "hushed", "summed", "unwritable"]
+__all__ = [
+    "MOST_HOMELESS",
+    "Voice",
+    "Watch",
+    "errors",
+    "fail",
+    "hushed",
+    "summed",
+    "tell_indexed",
+    "unwritable",
+]

@@ -10,7 +10,9 @@ from pipelines.console.failure import harmless
 
 if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.build import Report
+    from pipelines.index import Indexed
 
+MOST_HOMELESS: Final = 0.5  # of the photos; with more, the list is another's
 MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
 
 
@@ -27,6 +29,29 @@ class Voice:
             print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
         else:
             self.console.print(harmless(text), markup=False, highlight=False)
+
+
+def tell_indexed(made: "Indexed", city: str, voice: Voice) -> None:
+    """Tell what came of an index."""
+    for warning in made.warnings:
+        voice.say("warning", f"warning: {warning}", warning=warning)
+    for one in made.rejections:
+        words = f"rejected {one.key}: {one.reason}: {one.detail}"
+        voice.say("rejected", words, key=one.key, reason=one.reason, detail=one.detail)
+    voice.say(
+        "done",
+        f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
+        f"{made.without_photo} fronts without a photo: {city}/manifest.csv",
+        photos=made.photos,
+        fronts=made.fronts,
+        blocks=made.blocks,
+        fronts_without_photo=made.without_photo,
+        photos_without_front=list(made.without_front),
+    )
+    if made.homeless_share > MOST_HOMELESS:
+        count = len(made.without_front)
+        words = f"{count} of {made.photos} photos found no place: is it their list?"
+        voice.say("homeless", words, photos_without_front=count)
 
 
 def summed(report: "Report", voice: Voice) -> None:

@@ -7,25 +7,23 @@ are documented in `docs/manifest.md`; columns that are not known are kept.
 """
 
 import contextlib
-import dataclasses
 import hashlib
 import io
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from nostalgin_core.catalogue import inside
 from nostalgin_core.records import Front, Rejection
+from pipelines import bounded
 from pipelines.index import comma
-from pipelines.index.cells import front_from, text
+from pipelines.index.cells import text
+from pipelines.index.row import CSV, Row, contradictions, usable
 from pipelines.store import Store, parquet_bytes, tables
 
 PARQUET: Final = "manifest.parquet"
-CSV: Final = "manifest.csv"
 CSV_HASH: Final = b"nostalgin.csv_sha256"
 TITLE: Final = b"nostalgin.title"
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
@@ -45,23 +43,6 @@ FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
 
 class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
     """A manifest that can't be read at all, with what to do about it."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One photo that may show one front; either may be missing, not both."""
-
-    number: int  # as a spreadsheet counts
-    root: str
-    photo: str
-    front: Front | None
-    credit: str
-    cells: dict[str, Any] = field(compare=False)  # all that was written in the row
-
-    @property
-    def key(self) -> str:
-        """Name the row in rejections."""
-        return f"{CSV} row {self.number}"
 
 
 @dataclass(frozen=True)
@@ -196,8 +177,20 @@ def read(store: Store) -> Manifest:
 
 
 def optional(store: Store, name: str) -> bytes | None:
-    """Read a file if it is there."""
-    return store.read_bytes(name) if store.exists(name) else None
+    """Read a file if it is there.
+
+    Raises:
+        Unusable: if it can't be read.
+    """
+    if not store.exists(name):
+        return None
+    try:
+        return store.read_bytes(name, bounded.TABLE_BYTES)
+    except OSError as problem:
+        why = problem.strerror or str(problem)
+        raise Unusable(
+            f"{store.root}/{name}: {why}; mend the file or move it away"
+        ) from problem
 
 
 def parsed(data: bytes, where: str) -> pa.Table:
@@ -214,7 +207,7 @@ def parsed(data: bytes, where: str) -> pa.Table:
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
     """Parse the form that people mend."""
     try:
-        return comma.parsed(data)
+        return comma.parsed(data, ours=True)
     except comma.NoTable as problem:
         raise Unusable(f"{where} {problem}") from problem
 
@@ -246,44 +239,3 @@ def checked(
         (*warnings, *contradictions(rows)),
         hashlib.sha256(data).hexdigest(),
     )
-
-
-def contradictions(rows: Sequence[Row]) -> list[str]:
-    """Name the rows that tell a front otherwise than an earlier row, which counts."""
-    first: dict[tuple[str, str], Row] = {}
-    told = []
-    for row in rows:
-        if row.front is None:
-            continue
-        known = first.setdefault((row.front.block, row.front.front_id), row)
-        if known.front is not None and known.front != row.front:
-            differing = [
-                one.name
-                for one in dataclasses.fields(Front)
-                if getattr(known.front, one.name) != getattr(row.front, one.name)
-            ]
-            told.append(
-                f"{row.key}: {', '.join(differing)} of front {row.front.front_id} not "
-                f"as in row {known.number}, which counts; mend all the front's rows"
-            )
-    return told
-
-
-def usable(number: int, cells: comma.Cells) -> Row | Rejection:
-    """Check one row, and name the row and the remedy if it can't be used."""
-    name = f"{CSV} row {number}"
-    if None in cells:
-        return Rejection(
-            name, "manifest", "too many cells", f"{cells[None]}: quote commas"
-        )
-    photo = text(cells, "photo")
-    if not inside(photo):
-        detail = f"{photo!r} leads out of the photo folder: write a path inside it"
-        return Rejection(name, "manifest", "path outside the photo folder", detail)
-    try:
-        front = front_from(cells)
-    except ValueError as problem:
-        return Rejection(name, "manifest", "nonsense cell", f"{problem}: mend the cell")
-    if front is None and not photo:
-        return Rejection(name, "manifest", "empty row", "name a photo or a front")
-    return Row(number, text(cells, "root"), photo, front, text(cells, "credit"), cells)

@@ -13,6 +13,7 @@ from pipelines.index import manifest
 from pipelines.store import Store
 from tests.data import ROOT
 from tests.pipelines import painted
+from tests.pipelines.hostile import hostile
 
 
 def nostalgin(*words: object) -> Result:
@@ -251,3 +252,29 @@ def test_help_answers_without_loading_beam() -> None:
     report = "import sys, pipelines.cli; print('apache_beam' in sys.modules)"
     told = subprocess.check_output([sys.executable, "-c", report], text=True)
     assert told.strip() == "False"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device", "holes"])
+def test_a_photo_that_has_no_end_is_named_and_spoils_no_other(
+    tmp_path: Path, kind: str
+) -> None:
+    city = painted.write_city(tmp_path)
+    photo = hostile(tmp_path / "photos" / "5_1.png", kind)
+    models = ("--models", tmp_path / "models")
+    result = nostalgin("build", city, *models)
+    assert result.exit_code == 0, result.output
+    assert "rejected 5_1.png: photo: unreadable file" in result.output
+    assert "2 blocks" in result.output
+    result = nostalgin("explain", photo, "-o", tmp_path / "out", *models)
+    assert result.exit_code == 1
+    assert "5_1.png: " in result.output
+
+
+def test_a_scheme_is_reached_only_if_it_is_allowed(tmp_path: Path) -> None:
+    text = "root,photo,front_id,block,lot\ngs://nowhere,a.jpg,9-1-0,9,1\n"
+    (tmp_path / "manifest.csv").write_text(text)
+    result = nostalgin("build", tmp_path)
+    assert result.exit_code == 1
+    assert "manifest.csv row 2: scheme not allowed" in result.output
+    assert "--allow-scheme gs" in result.output
+    assert nostalgin("build", tmp_path, "--allow-scheme", "gs://x/").exit_code == 2
