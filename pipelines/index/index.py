@@ -14,6 +14,7 @@ from nostalgin_core.catalogue import Catalogue, Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
 from pipelines import bounded
 from pipelines.index import comma, manifest
+from pipelines.index.cells import MOST_FRONTS
 from pipelines.index.images import Nothing, images
 from pipelines.index.title import cleaned
 from pipelines.store import Store
@@ -65,13 +66,16 @@ def index(
     mended = replaceable(store, force=force)
     names, unnamed = images(photos, city)
     read = from_names(names, photos) if listed is None else from_csv(listed)
-    wanted = [e for e in read.entries if not blocks or e.block in blocks]
+    entries, crowded = sparse(read.entries)
+    wanted = [e for e in entries if not blocks or e.block in blocks]
+    if not wanted and crowded:
+        raise Nothing(f"{crowded[0].key}: {crowded[0].reason}: {crowded[0].detail}")
     if not wanted:
         raise Nothing(
             f"{listed or photos} lists none of the blocks {', '.join(blocks)}"
         )
     fronts, doubts = catalogue.fronts(wanted)
-    shown, strangers = catalogue.matched(read.entries, names)
+    shown, strangers = catalogue.matched(entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
     root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
     credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
@@ -87,7 +91,12 @@ def index(
         blocks=len({front.block for front in fronts}),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
-        rejections=(*unnamed, *read.rejections, *(strangers if not blocks else ())),
+        rejections=(
+            *unnamed,
+            *read.rejections,
+            *crowded,
+            *(strangers if not blocks else ()),
+        ),
         warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts, *kept),
     )
 
@@ -114,6 +123,24 @@ def copied(store: Store, name: str, data: bytes) -> str:
     """Keep a copy of a mended manifest, and say so."""
     kept = manifest.keep_copy(store, name, data)
     return f"{kept} keeps the manifest that was mended by hand"
+
+
+def sparse(entries: Sequence[Entry]) -> tuple[list[Entry], list[Rejection]]:
+    """Leave out blocks of more fronts than a manifest can count: they are no blocks."""
+    lots: dict[str, set[tuple[str, str]]] = defaultdict(set)
+    for entry in entries:
+        lots[entry.block].add((entry.lot, entry.street))
+    detail = (
+        f"more than {MOST_FRONTS:,}, so it is none: is it the right column? without a "
+        "catalogue, files are named by block and lot, or lie in more folders"
+    )
+    crowded = [
+        Rejection(f"block {block}", "catalogue", f"{len(own):,} lots", detail)
+        for block, own in lots.items()
+        if len(own) > MOST_FRONTS
+    ]
+    kept = [one for one in entries if len(lots[one.block]) <= MOST_FRONTS]
+    return kept, crowded
 
 
 def about(warnings: Sequence[str], rows: set[int]) -> list[str]:

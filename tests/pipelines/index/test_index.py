@@ -295,6 +295,25 @@ def test_a_cell_that_is_too_long_costs_its_row_alone(photos: Path) -> None:
     assert (photo.key, made.fronts) == ("b/993_2.jpg", 3)
 
 
+def test_a_block_of_more_lots_than_any_has_is_named_and_spoils_no_other(
+    photos: Path,
+) -> None:
+    rows = "".join(f",7,{lot},Elm Street,{lot},8,\n" for lot in range(1, 20_001))
+    made = indexed(photos, CATALOGUE + rows)
+    (one,) = made.rejections
+    assert (one.key, one.reason) == ("block 7", "20,000 lots")
+    assert (made.photos, made.fronts, made.blocks) == (3, 4, 2)
+    with pytest.raises(Nothing, match="block 7: 20,000 lots"):
+        indexed(photos, CATALOGUE.splitlines()[0] + "\n" + rows)
+
+
+def test_what_is_indexed_of_the_largest_block_can_be_built(photos: Path) -> None:
+    rows = "".join(f",7,{lot},Elm Street,{2 * lot},8,\n" for lot in range(1, 10_000))
+    made = indexed(photos, CATALOGUE.splitlines()[0] + "\n" + rows)
+    found = manifest.read(Store(str(photos.parent / "city")))
+    assert (made.fronts, found.rejections) == (9_999, ())
+
+
 def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:
     with pytest.raises(Nothing, match=r"gone\.csv"):
         index(photos, photos / "gone.csv", str(photos.parent / "city"))
