@@ -45,10 +45,11 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     from pipelines.models import Unlocked
     from pipelines.site import Foreign, ViewerMissingError
 
+    plain = (Unusable, Unlocked, Foreign, ViewerMissingError, build.Lost, build.Unrun)
     try:
-        with hushed(errors):
+        with hushed(errors, plain=(*plain, OSError)):
             report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
-    except (Unusable, Unlocked, build.Lost, Foreign, ViewerMissingError) as problem:
+    except plain as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem

@@ -13,6 +13,7 @@ from pipelines import bounded
 
 LOCK: Final = "models.lock"
 NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
+SHAPES: Final = {"segment": (1, 4), "inpaint": (3, 1)}  # inputs, outputs
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
 
 
@@ -52,10 +53,22 @@ class Models:
         return lock[f"{name}.onnx"]
 
     def load(self, name: str) -> Callable[..., Any]:
-        """Load a network, and refuse a file that is not the one the lock names."""
+        """Load a network, and refuse a file that is not the one the lock names.
+
+        Raises:
+            Unlocked: if it is not, or does not run.
+        """
         from nostalgin_core import session
 
-        return session.load(self.read(name), self.sha256(name))
+        data, lock = self.read(name), self.sha256(name)
+        inputs, outputs = SHAPES[name]
+        try:
+            return session.load(data, lock, inputs=inputs, outputs=outputs)
+        except session.ModelBrokenError as problem:
+            raise Unlocked(
+                f"{Path(self.folder) / name}.onnx does not run ({problem}): install "
+                "the package again, or export the network anew"
+            ) from problem
 
     def read(self, name: str) -> bytes:
         """Read a network's file, and refuse one that is not what the lock names.

@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -17,7 +17,7 @@ from apache_beam.runners.runner import PipelineResult
 
 from nostalgin_core.records import Rejection
 from pipelines import site
-from pipelines.build import embedded, rows
+from pipelines.build import cluster, embedded, rows
 from pipelines.build.city import Built, city
 from pipelines.build.options import CityOptions, part
 from pipelines.build.rows import WriteTable
@@ -90,6 +90,7 @@ def build(
         Unusable: if the manifest can't be read, or names no front.
         Foreign: if the folder for the site holds what another wrote.
         Lost: if a runner lost work, or what it made could not be kept.
+        Unrun: if a cluster does not answer, or gives up.
     """
     one_thread()
     ours = options.view_as(CityOptions)
@@ -101,7 +102,7 @@ def build(
         tell("warning", f"warning: {warning}", warning=warning)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORKS:
-        models.read(network)  # a spoiled file is told here, not by every photo
+        models.load(network)  # a spoiled file is told here, not by every photo
     bench = Bench(store, Versions.present(models), models)
     todo = plan(found.rows, city=ours.city, shard=shard)
     if shard == (1, 1) and not todo.blocks:
@@ -115,6 +116,7 @@ def build(
     tell("start", words, run=run, **counts)
     began = time.time()
     note(store, run, options, began)  # a folder that can't be written to is told now
+    cluster.reached(options)
     near = watch if "://" not in store.root else unwatched
     with near(partial(bench.versions.counts, store.root), len(todo.photos)):
         result = launched(options, todo, found, bench, run)
@@ -143,14 +145,21 @@ def launched(
 
     Raises:
         Lost: if what was made could not be kept.
+        Unrun: if a cluster gave up.
     """
-    known = Plan(todo.photos, todo.blocks, (*found.rejections, *todo.rejections))
+    runner = options.view_as(StandardOptions).runner
+    if runner != embedded.EMBEDDED:
+        with cluster.told(runner):
+            pipeline = beam.Pipeline(options=options)
+            write(city(pipeline, planned(todo, found), bench), bench, run)
+            result = pipeline.run()
+            result.wait_until_finish()
+        return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
-    write(city(pipeline, known, bench), bench, run)
-    near = options.view_as(StandardOptions).runner == embedded.EMBEDDED
+    write(city(pipeline, planned(todo, found), bench), bench, run)
     try:
-        with embedded.on_loopback() if near else nullcontext():
+        with embedded.on_loopback():
             result = pipeline.run()
             result.wait_until_finish()
     except Unstored as problem:
@@ -163,8 +172,14 @@ def launched(
     return result
 
 
+def planned(todo: Plan, found: Manifest) -> Plan:
+    """Join what is to be done with what the manifest's rejections tell."""
+    return replace(todo, rejections=(*found.rejections, *todo.rejections))
+
+
 def unstored(store: Store, why: str) -> str:
     """Say that a run ended because what it made could not be kept."""
+    why = why.partition(" [while running")[0]  # which Beam adds
     return (
         f"{store.root} takes no more artifacts: {why}; make room or mend the folder, "
         "and build again: what is kept already is not made twice"

@@ -1,6 +1,7 @@
 """What a build is told, as Beam options, so that any runner's launcher can tell it."""
 
 import argparse
+import os
 import re
 from collections.abc import Sequence
 from typing import Any, Final
@@ -12,7 +13,9 @@ from apache_beam.options.pipeline_options import (
 )
 from apache_beam.runners.runner import create_runner
 
+from pipelines.build import cluster
 from pipelines.build.embedded import EMBEDDED
+from pipelines.store import textual
 
 SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")  # RFC 3986, section 3.1
 OURS: Final = ("--city", "--models", "--shard", "--allow_schemes")
@@ -42,11 +45,15 @@ def options(
     """Gather options, with the embedded runner for `DirectRunner` and for none.
 
     Raises:
-        ValueError: if the shard is not k/n with 1 <= k <= n, if a scheme is none, if
-            there is no such runner, if nobody knows one of Beam's options, or for less
-            than no workers.
+        ValueError: if a word is no text, if the shard is not k/n with 1 <= k <= n, if a
+            scheme is none, if there is no such runner, if nobody knows one of Beam's
+            options, or for less than no workers.
     """
     part(shard)
+    odd = next((one for one in (models, *beam) if not textual(one)), None)
+    if odd is not None:
+        shown = os.fsencode(odd).decode(errors="backslashreplace")
+        raise ValueError(f"{shown}: is not UTF-8; write it anew, or rename the folder")
     told = (city, models, shard, ",".join(sorted(set(map(scheme, schemes)))))
     ours = dict(zip(OURS, told, strict=True))
     twice = [one for one in beam if one.partition("=")[0] in ours]
@@ -72,12 +79,13 @@ def known(runner: str, beam: Sequence[str]) -> None:
     options than Beam's own parser, so they are given all.
 
     Raises:
-        ValueError: if there is no such runner or option.
+        ValueError: if there is no such runner or option, or a package lacks.
     """
     try:
         create_runner(runner)
     except (ImportError, AttributeError) as problem:
         raise ValueError(f"--runner {runner}: {problem}") from problem
+    cluster.equipped(runner)
     if runner != EMBEDDED:
         return
     parser: Any = argparse.ArgumentParser(

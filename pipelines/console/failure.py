@@ -1,5 +1,7 @@
 """How a command ends that went wrong: what happened, how to mend it, exit code 1."""
 
+import errno
+import os
 from pathlib import Path
 from typing import Final
 
@@ -7,6 +9,11 @@ import typer
 from rich.console import Console
 
 FAILED: Final = 1
+REMEDIES: Final = {
+    errno.ENOSPC: "make room, or name a folder on another disk",
+    errno.EDQUOT: "make room, or name a folder on another disk",
+    errno.EFBIG: "allow larger files (ulimit -f), or name a folder on another disk",
+}
 
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
@@ -27,5 +34,9 @@ def fail(message: str) -> typer.Exit:
 
 def unwritable(folder: str | Path, problem: OSError) -> typer.Exit:
     """Say that results could not be put where they were wanted."""
-    why = problem.strerror or str(problem)
-    return fail(f"{folder}: {why}; name a folder that can be written to")
+    if problem.errno in REMEDIES:  # Arrow tells the same in more words
+        why, remedy = os.strerror(problem.errno), REMEDIES[problem.errno]
+    else:
+        why = problem.strerror or str(problem)
+        remedy = "name a folder that can be written to"
+    return fail(f"{folder}: {why}; {remedy}")

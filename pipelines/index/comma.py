@@ -17,7 +17,9 @@ from typing import Any, Final
 # that makes text of it; numbers are none, whatever their sign.
 FORMULA: Final = re.compile(r"'*[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
 NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
-MOST_CELL: Final = 2**31 - 1  # letters, of those that are parsed to be named
+MOST_CELL: Final = 2**31 - 1  # letters; what is too long is named by its row later
+MOST_LINE: Final = 20_000_000  # letters
+MOST_ROWS: Final = 5_000_000
 OTHERS: Final = re.compile(r"[;\t|]")  # what parts cells in other dialects
 
 Cells = dict[Any, Any]  # by column; what stands beyond the last one, under None
@@ -35,13 +37,16 @@ def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], list[Cells]]:
 
     Raises:
         NoTable: if it is no UTF-8, has a broken quote, parts its cells by other signs,
-            or names two columns alike.
+            names two columns alike, or is too large.
     """
     table: list[list[str]] = []
     try:
         text = io.StringIO(data.decode("utf-8-sig"), newline="")
         with long_cells():
-            table.extend(csv.reader(text, strict=True))
+            for row in csv.reader(short(text), strict=True):
+                if len(table) > MOST_ROWS:
+                    raise NoTable(f"has more than {MOST_ROWS:,} rows: part it")
+                table.append(row)
     except UnicodeDecodeError as problem:
         raise NoTable(f"is no UTF-8 ({problem}): save it as CSV in UTF-8") from problem
     except csv.Error as problem:
@@ -67,6 +72,18 @@ def long_cells() -> Iterator[None]:
         yield
     finally:
         csv.field_size_limit(before)
+
+
+def short(lines: Iterable[str]) -> Iterator[str]:
+    """Pass lines on, but none of which a row would take a machine's memory.
+
+    Raises:
+        NoTable: if there is such a line.
+    """
+    for number, one in enumerate(lines, 1):
+        if len(one) > MOST_LINE:
+            raise NoTable(f"line {number} has more than {MOST_LINE:,} letters: mend it")
+        yield one
 
 
 def by_column(names: Sequence[str], row: Sequence[str]) -> Cells:

@@ -32,7 +32,7 @@ def images(folder: Path, city: str) -> tuple[list[str], list[Rejection]]:
     if not folder.is_dir():
         raise Nothing(f"{folder} is no folder: name the folder that holds the photos")
     if not textual(os.path.abspath(folder)):  # noqa: PTH100 - a link stays a link
-        raise Nothing(f"{shown(folder)}: a folder's name is not UTF-8; rename it")
+        raise Nothing(f"{spelt_out(folder)}: a folder's name is not UTF-8; rename it")
     own, here = Path(city).resolve(), folder.resolve()
     outputs = [own / name for name in WRITTEN]
     if any(here.is_relative_to(output) for output in outputs):
@@ -106,9 +106,9 @@ def why(problem: OSError) -> str:
 
 def refused(name: str, reason: str, detail: str) -> Rejection:
     """Reject what can't be indexed, whatever bytes its name has."""
-    return Rejection(shown(name), "catalogue", reason, detail)
+    return Rejection(spelt_out(name), "catalogue", reason, detail)
 
 
-def shown(name: str | Path) -> str:
+def spelt_out(name: str | Path) -> str:
     """Spell out the bytes of a name that are no text."""
     return os.fsencode(name).decode(errors="backslashreplace")

@@ -15,9 +15,9 @@ from nostalgin_core.records import Front, Rejection
 from pipelines import bounded
 from pipelines.index import comma, manifest
 from pipelines.index.cells import MOST_FRONTS
-from pipelines.index.images import Nothing, images
+from pipelines.index.images import Nothing, images, spelt_out
 from pipelines.index.title import cleaned
-from pipelines.store import Store
+from pipelines.store import Store, textual
 
 LONGEST: Final = 48  # letters of a folder that names a block
 # 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
@@ -62,6 +62,8 @@ def index(
         Nothing: if there are no photos, no row of the catalogue makes sense, or a
             mended manifest would be lost.
     """
+    if not textual(credit):
+        raise Nothing(f"--credit {spelt_out(credit)} is not UTF-8: write it anew")
     store = Store(city)
     mended = replaceable(store, force=force)
     names, unnamed = images(photos, city)

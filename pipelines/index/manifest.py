@@ -196,12 +196,22 @@ def optional(store: Store, name: str) -> bytes | None:
 def parsed(data: bytes, where: str) -> pa.Table:
     """Parse the Parquet form."""
     try:
-        return pq.read_table(io.BytesIO(data))
-    except (pa.ArrowInvalid, OSError) as problem:
+        file = pq.ParquetFile(io.BytesIO(data))
+        told = file.metadata
+        groups = [told.row_group(number) for number in range(told.num_row_groups)]
+        bounded.fits(
+            sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
+        )
+        if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
+            raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
+        table = file.read()
+        table.validate(full=True)  # or else words may be no UTF-8
+    except (pa.ArrowException, OSError) as problem:
         raise Unusable(
             f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
             f"{CSV} will be read, or run `nostalgin index --force`"
         ) from problem
+    return table
 
 
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
