@@ -18,9 +18,11 @@ from pipelines import bounded
 from pipelines.console import (
     MOST_HOMELESS,
     Voice,
+    echo,
     errors,
     examples,
     fail,
+    opened_streams,
     tell_indexed,
     unwritable,
 )
@@ -99,14 +101,14 @@ def explain_command(
     except OSError as problem:
         raise unwritable(out, problem) from problem
     targets = sum(one["target"] for one in report["facades"])
-    typer.echo(
+    echo(
         f"{len(report['facades'])} facades ({targets} target), "
         f"{len(report['occluders'])} occluders, {report['seconds']['total']:.1f} CPU s"
     )
     for one in report["rejections"]:
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
-        typer.echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
-    typer.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
+        echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
+    echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
 
 
 @app.command("index", epilog=examples.INDEX)
@@ -275,6 +277,7 @@ def demo_command(
 
 def main() -> None:
     """Run the command line."""
+    opened_streams()
     app()
 
 

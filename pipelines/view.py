@@ -178,8 +178,8 @@ def view(city: Path, *, port: int = 0, browser: bool = True) -> None:
     """
     with server(site_of(city), port=port) as running:
         address = address_of(running)
-        sys.stdout.write(f"{address}\n")
-        sys.stdout.flush()
+        with contextlib.suppress(OSError):  # whoever gave the port knows it
+            print(address, flush=True)  # noqa: T201
         if browser:
             shown(address)
         with contextlib.suppress(KeyboardInterrupt):

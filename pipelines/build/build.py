@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
@@ -33,6 +33,13 @@ from pipelines.store.versions import Versions
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage
 Watch = Callable[[Count, int], AbstractContextManager[object]]  # of so many photos
+
+
+# As a worker's traceback has it; a run's tables are written without `keep`.
+UNWRITTEN: Final = (
+    rf"{Unstored.__name__}: (.*)",
+    r"(?:OS|Permission|[A-Z]\w+Directory)Error: (.*)",
+)
 
 
 class Lost(RuntimeError):  # noqa: N818 - it reads as what it is about
@@ -165,7 +172,8 @@ def launched(
     except Unstored as problem:
         raise Lost(unstored(bench.store, str(problem))) from problem
     except RuntimeError as problem:  # a worker's exception reaches us as its traceback
-        told = re.search(rf"{Unstored.__name__}: (.*)", str(problem))
+        found = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
+        told = next((one for one in found if one is not None), None)
         if told is None:
             raise
         raise Lost(unstored(bench.store, told[1])) from problem

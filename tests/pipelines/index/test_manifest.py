@@ -1,11 +1,13 @@
 import re
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from nostalgin_core.catalogue.entry import inside
 from nostalgin_core.records import Front
-from pipelines.index import cells, manifest
+from pipelines.index import cells, comma, manifest
 from pipelines.index.manifest import Unusable
 from pipelines.store.store import Store
 from tests.data import ROOT
@@ -198,6 +200,25 @@ def test_nonsense_is_refused_by_name(store: Store, data: bytes) -> None:
 def test_a_broken_parquet_file_is_refused_by_name(store: Store) -> None:
     (Path(store.root) / manifest.PARQUET).write_bytes(b"PAR1nonsense")
     with pytest.raises(Unusable, match=r"manifest\.parquet"):
+        manifest.read(store)
+
+
+def test_parquet_whose_words_are_no_text_is_refused_by_name(store: Store) -> None:
+    path = Path(store.root) / manifest.PARQUET
+    table = pq.read_table(path)
+    odd = pa.array([b"\xff.jpg"] * table.num_rows, pa.binary())
+    words = pa.Array.from_buffers(pa.string(), len(odd), odd.buffers())
+    pq.write_table(table.set_column(1, "photo", words), path)
+    with pytest.raises(Unusable, match=r"manifest\.parquet is no Parquet file"):
+        manifest.read(store)
+
+
+def test_parquet_that_claims_more_rows_than_a_city_has_is_refused(store: Store) -> None:
+    path = Path(store.root) / manifest.PARQUET
+    rows = pa.table({"photo": pa.nulls(comma.MOST_ROWS + 1, pa.string())})
+    pq.write_table(rows, path)
+    assert path.stat().st_size < 1_000_000
+    with pytest.raises(Unusable, match="more than 5,000,000 rows"):
         manifest.read(store)
 
 
