@@ -55,11 +55,11 @@ class Site(SimpleHTTPRequestHandler):
     timeout = WAIT_S
     path = ""  # until a request has told one
 
-    def handle_one_request(self) -> None:
-        """Answer a request, and be the connection that was heard of last."""
-        super().handle_one_request()
+    def parse_request(self) -> bool:
+        """Read a request, and be the connection that was heard of last."""
         if isinstance(self.server, Server):
             self.server.heard(self.connection)
+        return super().parse_request()
 
     def send_head(self) -> Any:
         """Open a file; refuse other hosts' names, and links that lead outside."""

@@ -172,8 +172,8 @@ def launched(
     except Unstored as problem:
         raise Lost(unstored(bench.store, str(problem))) from problem
     except RuntimeError as problem:  # a worker's exception reaches us as its traceback
-        found = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
-        told = next((one for one in found if one is not None), None)
+        lines = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
+        told = next((one for one in lines if one is not None), None)
         if told is None:
             raise
         raise Lost(unstored(bench.store, told[1])) from problem

@@ -37,6 +37,7 @@ PHOTO: Final = pa.schema(
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
+BATCH: Final = 1000  # rows
 DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
 
@@ -204,7 +205,7 @@ def parsed(data: bytes, where: str) -> pa.Table:
         )
         if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
             raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
-        table = file.read()
+        table = decoded(file)
         table.validate(full=True)  # or else words may be no UTF-8
     except (pa.ArrowException, OSError) as problem:
         raise Unusable(
@@ -212,6 +213,28 @@ def parsed(data: bytes, where: str) -> pa.Table:
             f"{CSV} will be read, or run `nostalgin index --force`"
         ) from problem
     return table
+
+
+def decoded(file: pq.ParquetFile) -> pa.Table:
+    """Read a table bit by bit: a long word that is repeated takes a file no bytes.
+
+    Raises:
+        OSError: if it has more bytes than are read.
+    """
+    batches, size = [], 0
+    for batch in file.iter_batches(BATCH):
+        plain = [
+            one.dictionary_decode() if pa.types.is_dictionary(one.type) else one
+            for one in batch.columns
+        ]
+        size += sum(one.nbytes for one in plain)
+        bounded.fits(size, bounded.TABLE_BYTES, "")
+        batches.append(plain)
+    if not batches:
+        return file.read()
+    columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
+    names, told = file.schema_arrow.names, file.schema_arrow.metadata
+    return pa.Table.from_arrays(columns, names).replace_schema_metadata(told)
 
 
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:

@@ -222,6 +222,16 @@ def test_parquet_that_claims_more_rows_than_a_city_has_is_refused(store: Store) 
         manifest.read(store)
 
 
+def test_a_word_that_is_repeated_without_end_is_refused(store: Store) -> None:
+    path = Path(store.root) / manifest.PARQUET
+    numbers, words = pa.array([0] * 20_000, pa.int32()), pa.array(["x" * 100_000])
+    photos = pa.DictionaryArray.from_arrays(numbers, words)  # 2 GB, if written out
+    pq.write_table(pa.table({"photo": photos}), path)
+    assert path.stat().st_size < 1_000_000
+    with pytest.raises(Unusable, match="Larger than the 250,000,000 bytes"):
+        manifest.read(store)
+
+
 def test_no_manifest_is_refused_with_the_remedy(tmp_path: Path) -> None:
     with pytest.raises(Unusable, match="nostalgin index"):
         manifest.read(Store(str(tmp_path)))
