@@ -75,7 +75,7 @@ def is_there(row: Row, city: str) -> bool:
     """Tell whether a row's photo is a file; where nobody answers, it is none."""
     try:
         return Store(rooted(row.root, city)).exists(row.photo)
-    except OSError:
+    except (OSError, ValueError):  # no answer, or no name
         return False
 
 
