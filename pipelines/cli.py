@@ -14,7 +14,17 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import Voice, errors, examples, fail, indexed, unwritable
+from pipelines import bounded
+from pipelines.console import (
+    Voice,
+    echo,
+    errors,
+    examples,
+    fail,
+    indexed,
+    opened_streams,
+    unwritable,
+)
 from pipelines.evaluate import commands
 from pipelines.launch import built, told
 
@@ -77,7 +87,7 @@ def explain_command(
     from pipelines import models as shelf
 
     try:
-        data = photo.read_bytes()
+        data = bounded.read(photo, bounded.PHOTO_BYTES)
     except OSError as problem:
         raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
     try:
@@ -90,14 +100,14 @@ def explain_command(
     except OSError as problem:
         raise unwritable(out, problem) from problem
     targets = sum(one["target"] for one in report["facades"])
-    typer.echo(
+    echo(
         f"{len(report['facades'])} facades ({targets} target), "
         f"{len(report['occluders'])} occluders, {report['seconds']['total']:.1f} CPU s"
     )
     for one in report["rejections"]:
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
-        typer.echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
-    typer.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
+        echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
+    echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
 
 
 @app.command("index", epilog=examples.INDEX)
@@ -155,6 +165,10 @@ def build_command(
     *,
     shard: Annotated[str, typer.Option(help="Part of the blocks, as 3/16.")] = "",
     models: ModelsFolder = None,
+    allow_scheme: Annotated[
+        list[str] | None,
+        typer.Option(help="Let the manifest's roots be gs://... ; may be repeated."),
+    ] = None,
     max_rejected: Annotated[
         float,
         typer.Option(
@@ -185,11 +199,10 @@ def build_command(
     was. All other options go to Beam.
     """
     voice = Voice(errors, machine=json_lines)
-    folder = str(models or "")
+    asked = {"models": str(models or ""), "shard": shard, "schemes": allow_scheme or ()}
     limits = [f"--stage_seconds={seconds}", f"--stage_gigabytes={gigabytes}"]
     flags = ["--retry"] * retry + ["--publish_anyway"] * publish_anyway
-    beam = [*context.args, *limits, *flags]
-    report = built(city, voice, models=folder, shard=shard, beam=beam)
+    report = built(city, voice, **asked, beam=[*context.args, *limits, *flags])
     whole = bool(report.blocks and report.photos)  # what no photo shows is assumed
     poor = report.rejected_share > max_rejected or report.held
     if poor or not (whole or shard):
@@ -277,6 +290,7 @@ def demo_command(
 
 def main() -> None:
     """Run the command line."""
+    opened_streams()
     app()
 
 

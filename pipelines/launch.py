@@ -16,7 +16,12 @@ if TYPE_CHECKING:  # both are slow to load
 
 
 def told(
-    city: str, *, models: str = "", shard: str = "", beam: Sequence[str] = ()
+    city: str,
+    *,
+    models: str = "",
+    shard: str = "",
+    schemes: Sequence[str] = (),
+    beam: Sequence[str] = (),
 ) -> "PipelineOptions":
     """Gather a build's options; one that makes no sense is wrong usage."""
     from pipelines.models import one_thread
@@ -26,7 +31,8 @@ def told(
     from pipelines import build
 
     try:
-        return build.options(city, models=models, shard=shard, beam=beam)
+        ours = {"models": models, "shard": shard, "schemes": schemes}
+        return build.options(city, **ours, beam=beam)
     except ValueError as problem:
         raise typer.BadParameter(str(problem)) from problem
 
@@ -40,12 +46,12 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     from pipelines.site import Foreign, ViewerMissingError
     from pipelines.store import Busy, Damaged
 
+    plain = (Unusable, Unlocked, Foreign, ViewerMissingError, build.Lost, build.Unrun)
+    plain = (*plain, Busy, Damaged)
     try:
-        with hushed(errors):
+        with hushed(errors, plain=(*plain, OSError)):
             report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
-    except (Unusable, Unlocked, Foreign, ViewerMissingError) as problem:
-        raise fail(str(problem)) from problem
-    except (Busy, Damaged, build.Lost) as problem:
+    except plain as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem

@@ -9,8 +9,11 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
+from pipelines import bounded
+
 LOCK: Final = "models.lock"
 NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
+SHAPES: Final = {"segment": (1, 4), "inpaint": (3, 1)}  # inputs, outputs
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
 
 
@@ -34,9 +37,13 @@ class Models:
         if not path.is_file():
             raise Unlocked(f"{self.folder} has no {LOCK}: name a folder that has one")
         try:
-            lock = json.loads(path.read_bytes())
-        except ValueError as problem:
-            raise Unlocked(f"{path} is no JSON ({problem})") from problem
+            lock = json.loads(bounded.read(path, bounded.LOCK_BYTES))
+        except OSError as problem:
+            why = problem.strerror
+            raise Unlocked(f"{path}: {why}; name a folder with a lock") from problem
+        except (ValueError, RecursionError) as problem:
+            why = str(problem)
+            raise Unlocked(f"{path} is no JSON ({why}): mend it") from problem
         if not isinstance(lock, dict) or not all(
             isinstance(one, str) for one in lock.values()
         ):
@@ -46,10 +53,22 @@ class Models:
         return lock[f"{name}.onnx"]
 
     def load(self, name: str) -> Callable[..., Any]:
-        """Load a network, and refuse a file that is not the one the lock names."""
+        """Load a network, and refuse a file that is not the one the lock names.
+
+        Raises:
+            Unlocked: if it is not, or does not run.
+        """
         from nostalgin_core import session
 
-        return session.load(self.read(name), self.sha256(name))
+        data, lock = self.read(name), self.sha256(name)
+        inputs, outputs = SHAPES[name]
+        try:
+            return session.load(data, lock, inputs=inputs, outputs=outputs)
+        except session.ModelBrokenError as problem:
+            raise Unlocked(
+                f"{Path(self.folder) / name}.onnx does not run ({problem}): install "
+                "the package again, or export the network anew"
+            ) from problem
 
     def read(self, name: str) -> bytes:
         """Read a network's file, and refuse one that is not what the lock names.
@@ -61,7 +80,11 @@ class Models:
         path = Path(self.folder) / f"{name}.onnx"
         if not path.is_file():
             raise Unlocked(f"{path} is missing: name a folder that has it")
-        data = path.read_bytes()
+        try:
+            data = bounded.read(path, bounded.NETWORK_BYTES)
+        except OSError as problem:
+            why = problem.strerror
+            raise Unlocked(f"{path}: {why}; name a folder that has it") from problem
         if hashlib.sha256(data).hexdigest() != wanted:
             raise Unlocked(
                 f"{path} is not the file that {LOCK} names: install the package again, "

@@ -3,7 +3,9 @@
 import contextlib
 import http
 import os
+import socket
 import sys
+import threading
 import webbrowser
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -11,6 +13,9 @@ from typing import Any, ClassVar, Final
 
 HOST: Final = "127.0.0.1"
 FOREVER: Final = ("/assets/", "/blocks/")  # named by content: they never change
+LONGEST: Final = 1000  # letters of a path; ours have 90
+WAIT_S: Final = 30.0  # for a request, or for whoever reads the answer
+MOST_OPEN: Final = 100  # connections; a browser opens six
 NEEDED: Final = ("index.html", "site.json", "tileset.json")
 
 
@@ -47,6 +52,14 @@ class Site(SimpleHTTPRequestHandler):
         ".woff2": "font/woff2",
     }
     protocol_version = "HTTP/1.1"
+    timeout = WAIT_S
+    path = ""  # until a request has told one
+
+    def parse_request(self) -> bool:
+        """Read a request, and be the connection that was heard of last."""
+        if isinstance(self.server, Server):
+            self.server.heard(self.connection)
+        return super().parse_request()
 
     def send_head(self) -> Any:
         """Open a file; refuse other hosts' names, and links that lead outside."""
@@ -55,11 +68,22 @@ class Site(SimpleHTTPRequestHandler):
         if self.headers.get("Host") not in (f"{HOST}:{port}", f"localhost:{port}"):
             self.send_error(http.HTTPStatus.FORBIDDEN)
             return None
-        root = Path(self.directory).resolve()
-        if not Path(self.translate_path(self.path)).resolve().is_relative_to(root):
+        if len(self.path) > LONGEST:
+            self.send_error(http.HTTPStatus.REQUEST_URI_TOO_LONG)
+            return None
+        try:
+            inside = self.inside()
+        except (ValueError, RuntimeError, OSError):  # no name, or links in a circle
+            inside = False
+        if not inside:
             self.send_error(http.HTTPStatus.NOT_FOUND)
             return None
         return super().send_head()
+
+    def inside(self) -> bool:
+        """Tell whether a path leads to something in the folder."""
+        path, root = Path(self.translate_path(self.path)), Path(self.directory)
+        return path.resolve().is_relative_to(root.resolve())
 
     def list_directory(self, path: Any) -> None:
         """Tell nobody what else is there."""
@@ -79,13 +103,47 @@ class Site(SimpleHTTPRequestHandler):
 
 
 class Server(ThreadingHTTPServer):
-    """A server that does not mind browsers which hang up early."""
+    """A server that does not mind browsers which hang up early, or never.
+
+    Each connection is a thread: of too many, the one goes that was silent for longest.
+    """
 
     daemon_threads = True
+    request_queue_size = 128
+
+    def __init__(self, *given: Any) -> None:
+        """Listen."""
+        super().__init__(*given)
+        self._open: dict[socket.socket, None] = {}  # the longest silent first
+        self._turn = threading.Lock()
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Make room for a connection."""
+        with self._turn:
+            self._open[request] = None
+            if len(self._open) > MOST_OPEN:
+                silent = next(iter(self._open))
+                del self._open[silent]
+                with contextlib.suppress(OSError):  # its thread ends by itself
+                    silent.shutdown(socket.SHUT_RDWR)
+        super().process_request(request, client_address)
+
+    def heard(self, request: socket.socket) -> None:
+        """Put a connection behind all others that may have to go."""
+        with self._turn:
+            if request in self._open:
+                del self._open[request]
+                self._open[request] = None
+
+    def shutdown_request(self, request: Any) -> None:
+        """Forget a connection that is done."""
+        with self._turn:
+            self._open.pop(request, None)
+        super().shutdown_request(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Report only what is not a closed connection."""
-        if not isinstance(sys.exception(), ConnectionError):
+        """Report only what is not a closed connection, or one that stood still."""
+        if not isinstance(sys.exception(), (ConnectionError, TimeoutError)):
             super().handle_error(request, client_address)
 
 
@@ -120,8 +178,8 @@ def view(city: Path, *, port: int = 0, browser: bool = True) -> None:
     """
     with server(site_of(city), port=port) as running:
         address = address_of(running)
-        sys.stdout.write(f"{address}\n")
-        sys.stdout.flush()
+        with contextlib.suppress(OSError):  # whoever gave the port knows it
+            print(address, flush=True)  # noqa: T201
         if browser:
             shown(address)
         with contextlib.suppress(KeyboardInterrupt):

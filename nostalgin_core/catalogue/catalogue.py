@@ -62,6 +62,7 @@ UNUSED: Final = frozenset(  # the archive's columns that say nothing about place
     }
 )
 FIRST_ROW: Final = 2
+LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +92,13 @@ def read(
     entries, rejections = [], []
     for number, (row, whole) in enumerate(zip(listed, given, strict=True), FIRST_ROW):
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
+        if cells.get("photo"):
+            cells["photo"] = str(row[columns["photo"]])  # blanks may be of its name
         if not any(map(_text, row.values())) and not whole.get(None):
             continue
         try:
             _check_width(whole)
+            _check_lengths(row)
             entry, doubts = from_cells(cells, number)
         except ValueError as problem:
             reason, _, detail = str(problem).partition(": ")
@@ -123,6 +127,7 @@ def matched(
     paths = {_path(photo) for photo in photos}
     for entry in entries:
         where = _path(entry.photo)
+        where = where if where in paths else _path(entry.photo.strip())
         if where in paths:
             by_path[where].append(entry)
         if entry.photo and ("/" not in where or where not in paths):
@@ -168,6 +173,20 @@ def _check_width(row: Mapping[Any, Any]) -> None:
             f"too many cells: {beyond!r} stands beyond the last column; put texts that "
             "hold commas in quotes"
         )
+
+
+def _check_lengths(row: Mapping[str, str | None]) -> None:
+    """Refuse a row with a cell that no name, address or number fills.
+
+    Raises:
+        ValueError: "reason: remedy".
+    """
+    for column, cell in row.items():
+        if cell and len(cell) > LONGEST_CELL:
+            raise ValueError(
+                f"cell too long: {column!r} has {len(cell):,} letters, more than "
+                f"{LONGEST_CELL:,}; shorten it, or look for a quote that is not closed"
+            )
 
 
 def _plain(column: object) -> str:

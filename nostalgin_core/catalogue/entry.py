@@ -126,8 +126,12 @@ def _trimmed(number: str) -> str:
     return number.lstrip("0") if number.strip("0") and number.isdecimal() else number
 
 
-def inside(photo: str) -> bool:
-    """Tell whether a path stays within the folder it is relative to."""
-    path = PurePosixPath(photo.replace("\\", "/"))
-    drive = len(photo) > 1 and photo[1] == ":"
+def inside(photo: str, *, windows: bool = False) -> bool:
+    """Tell whether a path stays within the folder it is relative to.
+
+    Drives and backslashes lead somewhere on `windows` alone; elsewhere they are letters
+    of a name.
+    """
+    path = PurePosixPath(photo.replace("\\", "/") if windows else photo)
+    drive = windows and len(photo) > 1 and photo[1] == ":"
     return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)

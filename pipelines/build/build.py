@@ -16,7 +16,7 @@ from apache_beam.runners.runner import PipelineResult
 
 from nostalgin_core.records import Rejection
 from pipelines import site
-from pipelines.build import embedded, rows
+from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
 from pipelines.build.embedded import in_process
@@ -35,6 +35,7 @@ from pipelines.build.supervisor import Limits
 from pipelines.index import manifest
 from pipelines.index.manifest import Manifest, Unusable
 from pipelines.index.plan import Plan, plan
+from pipelines.index.roots import located
 from pipelines.models import NETWORKS, Models, one_thread
 from pipelines.store import Damaged, Store, Unstored, held, runs
 from pipelines.store.versions import Versions
@@ -45,6 +46,13 @@ LEAST_SHOWN: Final = 0.5  # of the photos; with more no city is held back
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage
 Watch = Callable[[Count, int], AbstractContextManager[object]]  # of so many photos
+
+
+# As a worker's traceback has it; a run's tables are written without `keep`.
+UNWRITTEN: Final = (
+    rf"{Unstored.__name__}: (.*)",
+    r"(?:OS|Permission|[A-Z]\w+Directory)Error: (.*)",
+)
 
 
 def silent(event: str, text: str, **facts: Any) -> None:
@@ -71,6 +79,7 @@ def build(
         Foreign: if the folder for the site holds what another wrote.
         Lost: if a runner lost work, or what it made could not be kept.
         Busy: if another run is at work in the city folder.
+        Unrun: if a cluster does not answer, or gives up.
     """
     one_thread()
     ours = options.view_as(CityOptions)
@@ -90,12 +99,14 @@ def made(
 ) -> Report:
     """Build in a city folder that is ours for the time."""
     ours = options.view_as(CityOptions)
+    schemes = [one for one in ours.allow_schemes.split(",") if one]
     found = manifest.rewrite(store, manifest.read(store))
+    found = located(found, store.root, schemes)
     for warning in found.warnings:
         tell("warning", f"warning: {warning}", warning=warning)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORKS:
-        models.read(network)  # a spoiled file is told here, not by every photo
+        models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
     bench = Bench(store, Versions.present(models), models, limits, ours.retry)
     todo = plan(found.rows, city=ours.city, shard=shard)
@@ -103,12 +114,14 @@ def made(
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    run = runs.run_id(found.sha256, bench.versions, ours.shard)
+    asked = " ".join([ours.shard, *schemes])
+    run = runs.run_id(found.sha256, bench.versions, asked)
     counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
     note(store, run, options, began)  # a folder that can't be written to is told now
+    cluster.reached(options)
     near = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
@@ -170,28 +183,42 @@ def launched(
 
     Raises:
         Lost: if what was made could not be kept.
+        Unrun: if a cluster gave up.
     """
-    known = Plan(todo.photos, todo.blocks, (*found.rejections, *todo.rejections))
+    runner = options.view_as(StandardOptions).runner
+    if runner != embedded.EMBEDDED:
+        with cluster.told(runner):
+            pipeline = beam.Pipeline(options=options)
+            write(city(pipeline, planned(todo, found), bench), bench, run)
+            result = pipeline.run()
+            result.wait_until_finish()
+        return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
-    write(city(pipeline, known, bench), bench, run)
-    near = options.view_as(StandardOptions).runner == embedded.EMBEDDED
+    write(city(pipeline, planned(todo, found), bench), bench, run)
     try:
-        with embedded.on_loopback() if near else nullcontext():
+        with embedded.on_loopback():
             result = pipeline.run()
             result.wait_until_finish()
     except Unstored as problem:
         raise Lost(unstored(bench.store, str(problem))) from problem
     except RuntimeError as problem:  # a worker's exception reaches us as its traceback
-        told = re.search(rf"{Unstored.__name__}: (.*)", str(problem))
+        lines = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
+        told = next((one for one in lines if one is not None), None)
         if told is None:
             raise
         raise Lost(unstored(bench.store, told[1])) from problem
     return result
 
 
+def planned(todo: Plan, found: Manifest) -> Plan:
+    """Join what is to be done with what the manifest's rejections tell."""
+    return replace(todo, rejections=(*found.rejections, *todo.rejections))
+
+
 def unstored(store: Store, why: str) -> str:
     """Say that a run ended because what it made could not be kept."""
+    why = why.partition(" [while running")[0]  # which Beam adds
     return (
         f"{store.root} takes no more artifacts: {why}; make room or mend the folder, "
         "and build again: what is kept already is not made twice"

@@ -1,6 +1,8 @@
 """What a build is told, as Beam options, so that any runner's launcher can tell it."""
 
 import argparse
+import os
+import re
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -11,10 +13,13 @@ from apache_beam.options.pipeline_options import (
 )
 from apache_beam.runners.runner import create_runner
 
+from pipelines.build import cluster
 from pipelines.build.embedded import EMBEDDED
 from pipelines.build.supervisor import Limits
+from pipelines.store import textual
 
-OURS: Final = ("--city", "--models", "--shard")
+SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")  # RFC 3986, section 3.1
+OURS: Final = ("--city", "--models", "--shard", "--allow_schemes")
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
 
@@ -48,19 +53,31 @@ class CityOptions(PipelineOptions):
             action="store_true",
             help="replace a better site, too",
         )
+        parser.add_argument("--allow_schemes", default="", help="of roots, as gs,s3")
 
 
 def options(
-    city: str, *, models: str = "", shard: str = "", beam: Sequence[str] = ()
+    city: str,
+    *,
+    models: str = "",
+    shard: str = "",
+    schemes: Sequence[str] = (),
+    beam: Sequence[str] = (),
 ) -> PipelineOptions:
     """Gather options, with the embedded runner for `DirectRunner` and for none.
 
     Raises:
-        ValueError: if the shard is not k/n with 1 <= k <= n, if there is no such
-            runner, if nobody knows one of Beam's options, or for less than no workers.
+        ValueError: if a word is no text, if the shard is not k/n with 1 <= k <= n, if a
+            scheme is none, if there is no such runner, if nobody knows one of Beam's
+            options, or for less than no workers.
     """
     part(shard)
-    ours = dict(zip(OURS, (city, models, shard), strict=True))
+    odd = next((one for one in (models, *beam) if not textual(one)), None)
+    if odd is not None:
+        shown = os.fsencode(odd).decode(errors="backslashreplace")
+        raise ValueError(f"{shown}: is not UTF-8; write it anew, or rename the folder")
+    told = (city, models, shard, ",".join(sorted(set(map(scheme, schemes)))))
+    ours = dict(zip(OURS, told, strict=True))
     twice = [one for one in beam if one.partition("=")[0] in ours]
     if twice:
         raise ValueError(f"{twice[0]}: this command sets it, and Beam takes none")
@@ -84,12 +101,13 @@ def known(runner: str, beam: Sequence[str]) -> None:
     options than Beam's own parser, so they are given all.
 
     Raises:
-        ValueError: if there is no such runner or option.
+        ValueError: if there is no such runner or option, or a package lacks.
     """
     try:
         create_runner(runner)
     except (ImportError, AttributeError) as problem:
         raise ValueError(f"--runner {runner}: {problem}") from problem
+    cluster.equipped(runner)
     if runner != EMBEDDED:
         return
     parser: Any = argparse.ArgumentParser(
@@ -100,6 +118,18 @@ def known(runner: str, beam: Sequence[str]) -> None:
     strangers = parser.parse_known_args(list(beam))[1]
     if strangers:
         raise ValueError(f"{strangers[0]}: neither nostalgin nor Beam knows it")
+
+
+def scheme(written: str) -> str:
+    """Read "GS" or "gs://" as gs.
+
+    Raises:
+        ValueError: if no URI begins so.
+    """
+    name = written.casefold().removesuffix("://")
+    if not SCHEME.fullmatch(name):
+        raise ValueError(f"--allow-scheme {written}: write it as gs, without a path")
+    return name
 
 
 def part(shard: str) -> tuple[int, int]:

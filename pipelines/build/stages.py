@@ -53,7 +53,8 @@ def read(ref: PhotoRef) -> PhotoRef | Rejection:
     try:
         data = Store(ref.root).read_bytes(ref.name)
     except OSError as problem:
-        remedy = f"{ref.root}/{ref.name}: {problem}; restore the file or mend the row"
+        why = problem.strerror or str(problem)
+        remedy = f"{ref.root}/{ref.name}: {why}; restore the file or mend the row"
         return Rejection(ref.name, "photo", "unreadable file", remedy)
     return replace(ref, sha256=hashlib.sha256(data).hexdigest())
 

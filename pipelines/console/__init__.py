@@ -4,7 +4,13 @@ In: events, counts, exceptions. Out: a terminal's lines, or JSON for machines.
 It knows what there is to tell; none of those who tell know it. Open `voice` first.
 """
 
-from pipelines.console.failure import errors, fail, unwritable
+from pipelines.console.failure import (
+    echo,
+    errors,
+    fail,
+    opened_streams,
+    unwritable,
+)
 from pipelines.console.hush import hushed
 from pipelines.console.progress import Watch
 from pipelines.console.voice import Voice, indexed, summed
@@ -12,10 +18,12 @@ from pipelines.console.voice import Voice, indexed, summed
 __all__ = [
     "Voice",
     "Watch",
+    "echo",
     "errors",
     "fail",
     "hushed",
     "indexed",
+    "opened_streams",
     "summed",
     "unwritable",
 ]

@@ -1,12 +1,21 @@
 """How a command ends that went wrong: what happened, how to mend it, exit code 1."""
 
+import contextlib
+import errno
+import os
+import sys
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import typer
 from rich.console import Console
 
 FAILED: Final = 1
+REMEDIES: Final = {
+    errno.ENOSPC: "make room, or name a folder on another disk",
+    errno.EDQUOT: "make room, or name a folder on another disk",
+    errno.EFBIG: "allow larger files (ulimit -f), or name a folder on another disk",
+}
 
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
@@ -20,12 +29,53 @@ def harmless(text: str) -> str:
 
 def fail(message: str) -> typer.Exit:
     """Say on standard error what went wrong and how to mend it."""
-    errors.print("[bold red]error:[/] ", end="")
-    errors.print(harmless(message), markup=False)
+    with contextlib.suppress(OSError):  # nobody hears it; the exit code tells
+        errors.print("[bold red]error:[/] ", end="")
+        errors.print(harmless(message), markup=False)
     return typer.Exit(FAILED)
+
+
+def echo(text: str) -> None:
+    """Tell on standard output what came of a command that has written its files.
+
+    Raises:
+        Exit: if nobody can read it there.
+    """
+    try:
+        print(harmless(text), flush=True)  # noqa: T201
+    except OSError as problem:
+        why = unheard(sys.stdout, problem)
+        raise fail(f"standard output: {why}; the files are written") from problem
+
+
+def unheard(stream: Any, problem: BaseException) -> str:
+    """Let a stream that takes no more lead nowhere, and tell why it takes none."""
+    with contextlib.suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+    return getattr(problem, "strerror", "") or "Broken pipe"
+
+
+def opened_streams() -> None:
+    """Open the standard streams that are closed, so that no file takes their place.
+
+    Libraries write to the second of them, whatever it is.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the least number that is free
+            mode = "w" if number else "r"
+            setattr(sys, name, os.fdopen(number, mode, closefd=False))
 
 
 def unwritable(folder: str | Path, problem: OSError) -> typer.Exit:
     """Say that results could not be put where they were wanted."""
-    why = problem.strerror or str(problem)
-    return fail(f"{folder}: {why}; name a folder that can be written to")
+    if problem.errno in REMEDIES:  # Arrow tells the same in more words
+        why, remedy = os.strerror(problem.errno), REMEDIES[problem.errno]
+    else:
+        why = problem.strerror or str(problem)
+        remedy = "name a folder that can be written to"
+    return fail(f"{folder}: {why}; {remedy}")

@@ -14,11 +14,13 @@ TAIL: Final = 4000  # characters of chatter that explain a failure
 
 
 @contextlib.contextmanager
-def hushed(console: Console) -> Iterator[None]:
+def hushed(
+    console: Console, *, plain: tuple[type[BaseException], ...] = ()
+) -> Iterator[None]:
     """Catch what is written to standard error by others, workers' processes included.
 
     `console` goes on speaking. If the code inside fails, the end of what was caught is
-    told after all.
+    told after all, unless the failure is a `plain` one, that tells all by itself.
     """
     logging.getLogger().setLevel(logging.ERROR)
     try:
@@ -35,6 +37,8 @@ def hushed(console: Console) -> Iterator[None]:
         os.dup2(caught.fileno(), sys.stderr.fileno())
         try:
             yield
+        except plain:
+            raise
         except BaseException:
             voice.write(tail(caught))
             raise

@@ -1,12 +1,13 @@
 """How the command line speaks: lines for people, or JSON for machines."""
 
 import json
+import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
 
-from pipelines.console.failure import harmless
+from pipelines.console.failure import fail, harmless, unheard
 
 if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.build import Report
@@ -21,13 +22,23 @@ class Voice:
 
     console: Console
     machine: bool = False
+    lost: bool = False  # where it speaks, nobody listens any more
 
     def say(self, event: str, text: str, **facts: Any) -> None:
-        """Tell one event."""
-        if self.machine:
-            print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
-        else:
-            self.console.print(harmless(text), markup=False, highlight=False)
+        """Tell one event; if nobody can hear it any more, the work goes on."""
+        if self.lost:
+            return
+        try:
+            if self.machine:
+                print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
+            else:
+                self.console.print(harmless(text), markup=False, highlight=False)
+        except (OSError, SystemExit) as problem:  # the console exits on a closed pipe
+            self.lost = True
+            stream = sys.stdout if self.machine else self.console.file
+            why = unheard(stream, problem)
+            if self.machine:
+                fail(f"standard output: {why}; the work goes on, but untold")
 
 
 def summed(report: "Report", voice: Voice) -> None:

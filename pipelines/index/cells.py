@@ -20,6 +20,11 @@ def text(cells: dict[str, Any], name: str) -> str:
     return str(cells.get(name) or "").strip()
 
 
+def as_written(cells: dict[str, Any], name: str) -> str:
+    """Read a cell in which blanks may be part of a name; one of blanks is empty."""
+    return str(cells[name]) if text(cells, name) else ""
+
+
 def front_from(cells: dict[str, Any]) -> Front | None:
     """Read the front of a row.
 
@@ -84,8 +89,12 @@ def number(cells: dict[str, Any], name: str) -> float | None:
 
 def shown(cells: dict[str, Any], name: str) -> str:
     """Quote a cell in a message, which a huge one would drown."""
-    written = str(cells[name]).strip()
-    return repr(written if len(written) <= QUOTED else f"{written[:QUOTED]}...")
+    return quoted(str(cells[name]).strip())
+
+
+def quoted(words: str) -> str:
+    """Quote the beginning of what is written."""
+    return repr(words if len(words) <= QUOTED else f"{words[:QUOTED]}...")
 
 
 def flag(cells: dict[str, Any], name: str) -> bool:
@@ -97,4 +106,4 @@ def flag(cells: dict[str, Any], name: str) -> bool:
         return True
     if written in NO:
         return False
-    raise ValueError(f"{name} is {written!r}, neither true nor false")
+    raise ValueError(f"{name} is {quoted(written)}, neither true nor false")

@@ -5,13 +5,21 @@ empty line is a row without cells, so that rows keep the numbers that a spreadsh
 shows.
 """
 
+import contextlib
 import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
+# What a spreadsheet takes for a formula, which may run a program, and the apostrophe
+# that makes text of it; numbers are none, whatever their sign.
+FORMULA: Final = re.compile(r"'*[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
+NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
+MOST_CELL: Final = 2**31 - 1  # letters; what is too long is named by its row later
+MOST_LINE: Final = 20_000_000  # letters
+MOST_ROWS: Final = 5_000_000
 OTHERS: Final = re.compile(r"[;\t|]")  # what parts cells in other dialects
 
 Cells = dict[Any, Any]  # by column; what stands beyond the last one, under None
@@ -21,28 +29,61 @@ class NoTable(ValueError):  # noqa: N818 - it reads as what it is about
     """Bytes that are no table, with the remedy."""
 
 
-def parsed(data: bytes) -> tuple[list[str], list[Cells]]:
+def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], list[Cells]]:
     """Read the names of the columns, and the rows below them.
+
+    In a table of `ours` the apostrophes are taken off that `written` put before what a
+    spreadsheet would run.
 
     Raises:
         NoTable: if it is no UTF-8, has a broken quote, parts its cells by other signs,
-            or names two columns alike.
+            names two columns alike, or is too large.
     """
+    table: list[list[str]] = []
     try:
         text = io.StringIO(data.decode("utf-8-sig"), newline="")
-        reader = csv.reader(text, strict=True)
-        names = next(reader, [])
-        rows = [by_column(names, row) for row in reader]
+        with long_cells():
+            for row in csv.reader(short(text), strict=True):
+                if len(table) > MOST_ROWS:
+                    raise NoTable(f"has more than {MOST_ROWS:,} rows: part it")
+                table.append(row)
     except UnicodeDecodeError as problem:
         raise NoTable(f"is no UTF-8 ({problem}): save it as CSV in UTF-8") from problem
     except csv.Error as problem:
-        raise NoTable(f"is no CSV ({problem}): save it anew as CSV") from problem
+        where = f"row {len(table) + 1}: {problem}"
+        raise NoTable(f"is no CSV ({where}): mend its quotes") from problem
+    if ours:
+        table = [[bare(cell) for cell in row] for row in table]
+    names, *below = table or [[]]
+    rows = [by_column(names, row) for row in below]
     if len(names) == 1 and (mark := OTHERS.search(names[0])):
         raise NoTable(f"parts its cells by {mark[0]!r}: save it with commas")
     twice = [name for name, count in Counter(names).items() if name and count > 1]
     if twice:
         raise NoTable(f"has two columns {twice[0]!r}: rename or delete one of them")
     return names, rows
+
+
+@contextlib.contextmanager
+def long_cells() -> Iterator[None]:
+    """Let cells be longer than Python's limit, at which it gives up the whole table."""
+    before = csv.field_size_limit(MOST_CELL)
+    try:
+        yield
+    finally:
+        csv.field_size_limit(before)
+
+
+def short(lines: Iterable[str]) -> Iterator[str]:
+    """Pass lines on, but none of which a row would take a machine's memory.
+
+    Raises:
+        NoTable: if there is such a line.
+    """
+    for number, one in enumerate(lines, 1):
+        if len(one) > MOST_LINE:
+            raise NoTable(f"line {number} has more than {MOST_LINE:,} letters: mend it")
+        yield one
 
 
 def by_column(names: Sequence[str], row: Sequence[str]) -> Cells:
@@ -63,6 +104,17 @@ def written(names: Sequence[str], rows: Iterable[Cells]) -> str:
     return line(names) + "".join(line([row.get(n) for n in names]) for row in rows)
 
 
+def harmless(cell: Any) -> Any:
+    """Put an apostrophe before text that a spreadsheet would run."""
+    text = isinstance(cell, str) and FORMULA.match(cell) and not NUMBER.fullmatch(cell)
+    return f"'{cell}" if text else cell
+
+
+def bare(cell: str) -> str:
+    """Take off the apostrophe that `harmless` put there."""
+    return cell[1:] if cell[:1] == "'" and FORMULA.match(cell) else cell
+
+
 def line(cells: Sequence[Any]) -> str:
     """Write one row.
 
@@ -70,5 +122,5 @@ def line(cells: Sequence[Any]) -> str:
     two; a lone carriage return in a file's name would else break the table.
     """
     sink = io.StringIO(newline="")
-    csv.writer(sink).writerow(cells)
+    csv.writer(sink).writerow(map(harmless, cells))
     return sink.getvalue().removesuffix("\r\n") + "\n"

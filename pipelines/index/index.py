@@ -12,22 +12,17 @@ from typing import Final
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Catalogue, Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
+from pipelines import bounded
 from pipelines.index import comma, manifest
+from pipelines.index.cells import MOST_FRONTS
+from pipelines.index.images import Nothing, images, spelt_out
 from pipelines.index.title import cleaned
 from pipelines.store import Store, textual
 
-SUFFIXES: Final = (
-    ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
-)
-WRITTEN: Final = ("site", "artifacts", "runs")  # by build, in the city folder
 LONGEST: Final = 48  # letters of a folder that names a block
 # 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
 MOST_HOMELESS: Final = 0.5  # of the photos
 BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
-
-
-class Nothing(ValueError):  # noqa: N818 - it reads as what it is about
-    """A folder or a catalogue that holds nothing to index, with the remedy."""
 
 
 @dataclass(frozen=True)
@@ -68,17 +63,22 @@ def index(
         Nothing: if there are no photos, no row of the catalogue makes sense, or a
             mended manifest would be lost.
     """
+    if not textual(credit):
+        raise Nothing(f"--credit {spelt_out(credit)} is not UTF-8: write it anew")
     store = Store(city)
     mended = replaceable(store, force=force)
-    names, unnamed = spelt(images(photos, city))
+    names, unnamed = images(photos, city)
     read = from_names(names, photos) if listed is None else from_csv(listed)
-    wanted = [e for e in read.entries if not blocks or e.block in blocks]
+    entries, crowded = sparse(read.entries)
+    wanted = [e for e in entries if not blocks or e.block in blocks]
+    if not wanted and crowded:
+        raise Nothing(f"{crowded[0].key}: {crowded[0].reason}: {crowded[0].detail}")
     if not wanted:
         raise Nothing(
             f"{listed or photos} lists none of the blocks {', '.join(blocks)}"
         )
     fronts, doubts = catalogue.fronts(wanted)
-    shown, strangers = catalogue.matched(read.entries, names)
+    shown, strangers = catalogue.matched(entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
     root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
     credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
@@ -94,7 +94,12 @@ def index(
         blocks=len({front.block for front in fronts}),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
-        rejections=(*unnamed, *read.rejections, *(strangers if not blocks else ())),
+        rejections=(
+            *unnamed,
+            *read.rejections,
+            *crowded,
+            *(strangers if not blocks else ()),
+        ),
         warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts, *kept),
     )
 
@@ -105,7 +110,10 @@ def replaceable(store: Store, *, force: bool) -> tuple[str, bytes] | None:
     Raises:
         Nothing: if it may not.
     """
-    mended = manifest.mended_by_hand(store)
+    try:
+        mended = manifest.mended_by_hand(store)
+    except manifest.Unusable as problem:
+        raise Nothing(str(problem)) from problem
     if mended is not None and not force:
         raise Nothing(
             f"{store.root}/{mended[0]} is not as index wrote it, but mended by hand or "
@@ -120,6 +128,24 @@ def copied(store: Store, name: str, data: bytes) -> str:
     return f"{kept} keeps the manifest that was mended by hand"
 
 
+def sparse(entries: Sequence[Entry]) -> tuple[list[Entry], list[Rejection]]:
+    """Leave out blocks of more fronts than a manifest can count: they are no blocks."""
+    lots: dict[str, set[tuple[str, str]]] = defaultdict(set)
+    for entry in entries:
+        lots[entry.block].add((entry.lot, entry.street))
+    detail = (
+        f"more than {MOST_FRONTS:,}, so it is none: is it the right column? without a "
+        "catalogue, files are named by block and lot, or lie in more folders"
+    )
+    crowded = [
+        Rejection(f"block {block}", "catalogue", f"{len(own):,} lots", detail)
+        for block, own in lots.items()
+        if len(own) > MOST_FRONTS
+    ]
+    kept = [one for one in entries if len(lots[one.block]) <= MOST_FRONTS]
+    return kept, crowded
+
+
 def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
     """Leave out what is said about rows that were not asked for."""
     named = [(re.search(r" row (\d+):", warning), warning) for warning in warnings]
@@ -131,56 +157,6 @@ def first_credit(entries: Sequence[Entry]) -> str:
     return next((entry.credit for entry in entries if entry.credit), "")
 
 
-def images(folder: Path, city: str) -> list[str]:
-    """List the images below a folder, by their paths relative to it.
-
-    What lies in the city folder is none of them, if that is inside.
-
-    Raises:
-        Nothing: if there is no such folder, or no image in it, or if it is one that
-            `build` writes to.
-    """
-    if not folder.is_dir():
-        raise Nothing(f"{folder} is no folder: name the folder that holds the photos")
-    if not textual(os.path.abspath(folder)):  # noqa: PTH100 - a link stays a link
-        shown = os.fsencode(folder).decode(errors="backslashreplace")
-        raise Nothing(f"{shown}: a folder's name is not UTF-8; rename it")
-    own, here = Path(city).resolve(), folder.resolve()
-    outputs = [own / name for name in WRITTEN]
-    if any(here.is_relative_to(output) for output in outputs):
-        raise Nothing(f"{folder} is where build writes: move the photos elsewhere")
-    if own != here and own.is_relative_to(here):
-        outputs = [own]
-    found = sorted(
-        path.relative_to(here).as_posix()
-        for path in here.rglob("*")
-        if path.suffix.casefold() in SUFFIXES
-        and path.is_file()
-        and not any(path.is_relative_to(output) for output in outputs)
-    )
-    if not found:
-        raise Nothing(f"{folder} holds no image ({', '.join(SUFFIXES)})")
-    return found
-
-
-def spelt(names: Sequence[str]) -> tuple[list[str], list[Rejection]]:
-    """Part the files whose names are text from those whose bytes spell none.
-
-    Raises:
-        Nothing: if no name is text.
-    """
-    kept = [name for name in names if textual(name)]
-    odd = [os.fsencode(name).decode(errors="backslashreplace") for name in names]
-    rejections = [
-        Rejection(shown, "catalogue", "file name is not UTF-8", "rename the file")
-        for name, shown in zip(names, odd, strict=True)
-        if not textual(name)
-    ]
-    if not kept:
-        raise Nothing(f"{rejections[0].key}: {rejections[0].reason}; rename the files")
-    return kept, rejections
-
-
 def from_csv(path: Path) -> Catalogue:
     """Read a catalogue.
 
@@ -188,7 +164,7 @@ def from_csv(path: Path) -> Catalogue:
         Nothing: if it can't be read, or no row of it makes sense.
     """
     try:
-        _, rows = comma.parsed(path.read_bytes())
+        _, rows = comma.parsed(bounded.read(path, bounded.TABLE_BYTES))
     except OSError as problem:
         raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
     except comma.NoTable as problem:

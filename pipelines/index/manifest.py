@@ -7,25 +7,23 @@ are documented in `docs/manifest.md`; columns that are not known are kept.
 """
 
 import contextlib
-import dataclasses
 import hashlib
 import io
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from nostalgin_core.catalogue import inside
 from nostalgin_core.records import Front, Rejection
+from pipelines import bounded
 from pipelines.index import comma
-from pipelines.index.cells import front_from, text
+from pipelines.index.cells import text
+from pipelines.index.row import CSV, Row, contradictions, usable
 from pipelines.store import Store, parquet_bytes, tables
 
 PARQUET: Final = "manifest.parquet"
-CSV: Final = "manifest.csv"
 CSV_HASH: Final = b"nostalgin.csv_sha256"
 TITLE: Final = b"nostalgin.title"
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
@@ -39,29 +37,13 @@ PHOTO: Final = pa.schema(
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
+BATCH: Final = 1000  # rows
 DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
 
 
 class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
     """A manifest that can't be read at all, with what to do about it."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One photo that may show one front; either may be missing, not both."""
-
-    number: int  # as a spreadsheet counts
-    root: str
-    photo: str
-    front: Front | None
-    credit: str
-    cells: dict[str, Any] = field(compare=False)  # all that was written in the row
-
-    @property
-    def key(self) -> str:
-        """Name the row in rejections."""
-        return f"{CSV} row {self.number}"
 
 
 @dataclass(frozen=True)
@@ -196,25 +178,69 @@ def read(store: Store) -> Manifest:
 
 
 def optional(store: Store, name: str) -> bytes | None:
-    """Read a file if it is there."""
-    return store.read_bytes(name) if store.exists(name) else None
+    """Read a file if it is there.
+
+    Raises:
+        Unusable: if it can't be read.
+    """
+    if not store.exists(name):
+        return None
+    try:
+        return store.read_bytes(name, bounded.TABLE_BYTES)
+    except OSError as problem:
+        why = problem.strerror or str(problem)
+        raise Unusable(
+            f"{store.root}/{name}: {why}; mend the file or move it away"
+        ) from problem
 
 
 def parsed(data: bytes, where: str) -> pa.Table:
     """Parse the Parquet form."""
     try:
-        return pq.read_table(io.BytesIO(data))
-    except (pa.ArrowInvalid, OSError) as problem:
+        file = pq.ParquetFile(io.BytesIO(data))
+        told = file.metadata
+        groups = [told.row_group(number) for number in range(told.num_row_groups)]
+        bounded.fits(
+            sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
+        )
+        if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
+            raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
+        table = decoded(file)
+        table.validate(full=True)  # or else words may be no UTF-8
+    except (pa.ArrowException, OSError) as problem:
         raise Unusable(
             f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
             f"{CSV} will be read, or run `nostalgin index --force`"
         ) from problem
+    return table
+
+
+def decoded(file: pq.ParquetFile) -> pa.Table:
+    """Read a table bit by bit: a long word that is repeated takes a file no bytes.
+
+    Raises:
+        OSError: if it has more bytes than are read.
+    """
+    batches, size = [], 0
+    for batch in file.iter_batches(BATCH):
+        plain = [
+            one.dictionary_decode() if pa.types.is_dictionary(one.type) else one
+            for one in batch.columns
+        ]
+        size += sum(one.nbytes for one in plain)
+        bounded.fits(size, bounded.TABLE_BYTES, "")
+        batches.append(plain)
+    if not batches:
+        return file.read()
+    columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
+    names, told = file.schema_arrow.names, file.schema_arrow.metadata
+    return pa.Table.from_arrays(columns, names).replace_schema_metadata(told)
 
 
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
     """Parse the form that people mend."""
     try:
-        return comma.parsed(data)
+        return comma.parsed(data, ours=True)
     except comma.NoTable as problem:
         raise Unusable(f"{where} {problem}") from problem
 
@@ -246,44 +272,3 @@ def checked(
         (*warnings, *contradictions(rows)),
         hashlib.sha256(data).hexdigest(),
     )
-
-
-def contradictions(rows: Sequence[Row]) -> list[str]:
-    """Name the rows that tell a front otherwise than an earlier row, which counts."""
-    first: dict[tuple[str, str], Row] = {}
-    told = []
-    for row in rows:
-        if row.front is None:
-            continue
-        known = first.setdefault((row.front.block, row.front.front_id), row)
-        if known.front is not None and known.front != row.front:
-            differing = [
-                one.name
-                for one in dataclasses.fields(Front)
-                if getattr(known.front, one.name) != getattr(row.front, one.name)
-            ]
-            told.append(
-                f"{row.key}: {', '.join(differing)} of front {row.front.front_id} not "
-                f"as in row {known.number}, which counts; mend all the front's rows"
-            )
-    return told
-
-
-def usable(number: int, cells: comma.Cells) -> Row | Rejection:
-    """Check one row, and name the row and the remedy if it can't be used."""
-    name = f"{CSV} row {number}"
-    if None in cells:
-        return Rejection(
-            name, "manifest", "too many cells", f"{cells[None]}: quote commas"
-        )
-    photo = text(cells, "photo")
-    if not inside(photo):
-        detail = f"{photo!r} leads out of the photo folder: write a path inside it"
-        return Rejection(name, "manifest", "path outside the photo folder", detail)
-    try:
-        front = front_from(cells)
-    except ValueError as problem:
-        return Rejection(name, "manifest", "nonsense cell", f"{problem}: mend the cell")
-    if front is None and not photo:
-        return Rejection(name, "manifest", "empty row", "name a photo or a front")
-    return Row(number, text(cells, "root"), photo, front, text(cells, "credit"), cells)

@@ -1,13 +1,13 @@
 """What a manifest asks for: photos to work on, and blocks to build from them."""
 
 import hashlib
-import os
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nostalgin_core.records import Front, Rejection
-from pipelines.index.manifest import Row
+from pipelines.index.roots import rooted
+from pipelines.index.row import Row
 
 Name = tuple[str, str]  # a photo's root and its path below
 
@@ -99,13 +99,6 @@ def homeless(row: Row) -> Rejection:
     """Tell that a photo can't be placed, and how to give it a place."""
     detail = f"{row.key}: fill in front_id, block and lot of {row.photo}"
     return Rejection(row.photo, "manifest", "no front known", detail)
-
-
-def rooted(root: str, city: str) -> str:
-    """Resolve a photo folder that is written relative to the city folder."""
-    if "://" in root or os.path.isabs(root):  # noqa: PTH117 - may be no local path
-        return root
-    return os.path.normpath(os.path.join(city, root))  # noqa: PTH118
 
 
 def falls_to(block: str, shard: tuple[int, int]) -> bool:

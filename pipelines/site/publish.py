@@ -12,8 +12,9 @@ import numpy as np
 
 from nostalgin_core import city
 from pipelines.index import cleaned, of_folder
-from pipelines.index.manifest import Row, natural
-from pipelines.index.plan import rooted
+from pipelines.index.manifest import natural
+from pipelines.index.roots import rooted
+from pipelines.index.row import Row
 from pipelines.site import site
 from pipelines.site.folder import written
 from pipelines.store import Damaged, Store, runs

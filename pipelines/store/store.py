@@ -25,6 +25,7 @@ import pyarrow.fs as pafs
 import pyarrow.parquet as pq
 
 from nostalgin_core.records import Rejection
+from pipelines import bounded
 from pipelines.store import seal, tables
 from pipelines.store.seal import Damaged
 
@@ -100,15 +101,19 @@ class Store:
         system, root = self._open()
         return system.get_file_info(f"{root}/{name}").type == pafs.FileType.File
 
-    def read_bytes(self, name: str) -> bytes:
-        """Read a whole file.
+    def read_bytes(self, name: str, most: int = bounded.PHOTO_BYTES) -> bytes:
+        """Read a whole file of at most so many bytes.
 
         Raises:
             FileNotFoundError: if there is none.
+            OSError: if it is larger, or no regular file.
         """
         system, root = self._open()
-        with system.open_input_stream(f"{root}/{name}") as stream:
-            return stream.read()
+        if isinstance(system, pafs.LocalFileSystem):
+            return bounded.read(f"{root}/{name}", most)
+        with system.open_input_file(f"{root}/{name}") as file:
+            bounded.fits(file.size(), most, f"{self.root}/{name}")
+            return file.read()
 
     def write_bytes(self, name: str, data: bytes) -> None:
         """Write a file so that it is there wholly or not at all."""

@@ -1,5 +1,6 @@
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from pipelines.index import manifest
 from pipelines.store import Store
 from tests.data import ROOT
 from tests.pipelines import painted
+from tests.pipelines.hostile import hostile
 
 
 def nostalgin(*words: object) -> Result:
@@ -206,7 +208,9 @@ def test_a_port_that_is_none_is_wrong_usage(port: str, tmp_path: Path) -> None:
     assert nostalgin("view", tmp_path, "--port", port).exit_code == 2
 
 
-@pytest.mark.parametrize("lock", ["", "{", "[]", '{"segment.onnx": 1}', "{}"])
+@pytest.mark.parametrize(
+    "lock", ["", "{", "[]", '{"segment.onnx": 1}', "{}", "[" * 100_000]
+)
 def test_a_lock_that_makes_no_sense_is_named(tmp_path: Path, lock: str) -> None:
     photo = tmp_path / "photo.png"
     photo.write_bytes(painted.photo())
@@ -251,3 +255,110 @@ def test_help_answers_without_loading_beam() -> None:
     report = "import sys, pipelines.cli; print('apache_beam' in sys.modules)"
     told = subprocess.check_output([sys.executable, "-c", report], text=True)
     assert told.strip() == "False"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device", "holes"])
+def test_a_photo_that_has_no_end_is_named_and_spoils_no_other(
+    tmp_path: Path, kind: str
+) -> None:
+    city = painted.write_city(tmp_path)
+    photo = hostile(tmp_path / "photos" / "5_1.png", kind)
+    models = ("--models", tmp_path / "models")
+    result = nostalgin("build", city, *models)
+    assert result.exit_code == 0, result.output
+    assert "rejected 5_1.png: photo: unreadable file" in result.output
+    assert "2 blocks" in result.output
+    result = nostalgin("explain", photo, "-o", tmp_path / "out", *models)
+    assert result.exit_code == 1
+    assert "5_1.png: " in result.output
+
+
+def test_a_scheme_is_reached_only_if_it_is_allowed(tmp_path: Path) -> None:
+    text = "root,photo,front_id,block,lot\ngs://nowhere,a.jpg,9-1-0,9,1\n"
+    (tmp_path / "manifest.csv").write_text(text)
+    result = nostalgin("build", tmp_path)
+    assert result.exit_code == 1
+    assert "manifest.csv row 2: scheme not allowed" in result.output
+    assert "--allow-scheme gs" in result.output
+    assert nostalgin("build", tmp_path, "--allow-scheme", "gs://x/").exit_code == 2
+
+
+@pytest.mark.parametrize("data", [b"", b"\x08\x07" * 500, painted.inpaint_network()])
+def test_a_network_that_does_not_run_is_told_before_the_work(
+    tmp_path: Path, data: bytes
+) -> None:
+    city = painted.write_city(tmp_path)
+    made = {"segment": data, "inpaint": painted.inpaint_network()}
+    models = ("--models", painted.write_models(tmp_path / "relocked", **made))
+    result = nostalgin("build", city, *models)
+    assert result.exit_code == 1
+    assert "segment.onnx does not run" in result.output
+    assert not (city / "artifacts").exists()
+    photo = tmp_path / "photos" / "5_1.png"
+    told = nostalgin("explain", photo, "-o", tmp_path / "out", *models, "--no-placard")
+    assert told.exit_code == 1
+    assert "segment.onnx does not run" in told.output
+
+
+def test_a_credit_that_is_no_text_is_told(tmp_path: Path) -> None:
+    (tmp_path / "5_1.jpg").write_bytes(b"x")
+    words = ("-o", tmp_path / "city", "--credit", "\udcff")
+    result = nostalgin("index", tmp_path, *words)
+    assert result.exit_code == 1
+    assert "is not UTF-8" in result.output
+
+
+COMMAND = (sys.executable, "-m", "pipelines.cli")
+
+
+def ended(*words: str, tail: str) -> tuple[int, str]:
+    """Run a command in a shell; give its exit code and standard error."""
+    line = f"{shlex.join([*COMMAND, *words])} {tail}; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(
+        ["bash", "-c", line], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("how", "tail", "told"),
+    [
+        (("--json",), "| head -c0", "standard output: "),
+        (("--json",), ">/dev/full", "standard output: No space left on device"),
+        (("--json",), ">&-", ""),
+        ((), "2>&1 | head -c0", ""),
+        ((), "2>/dev/full", ""),
+        ((), "2>&-", ""),
+    ],
+)
+def test_an_index_that_nobody_hears_is_made_all_the_same(
+    tmp_path: Path, how: tuple[str, ...], tail: str, told: str
+) -> None:
+    photos = tmp_path / "photos"
+    photos.mkdir()
+    (photos / "5_1.jpg").write_bytes(b"x")
+    city = tmp_path / "city"
+    words = ("index", str(photos), "-o", str(city), *how)
+    code, said = ended(*words, tail=tail)
+    assert code == 0, said
+    assert told in said
+    assert "Traceback" not in said
+    assert (city / "manifest.parquet").exists()
+
+
+def test_files_may_be_smaller_than_what_is_written(tmp_path: Path) -> None:
+    photos = tmp_path / "photos"
+    photos.mkdir()
+    for lot in range(1, 400):
+        (photos / f"5_{lot}.jpg").write_bytes(b"x")
+    line = shlex.join([*COMMAND, "index", str(photos), "-o", str(tmp_path / "city")])
+    done = subprocess.run(
+        ["bash", "-c", f"ulimit -f 4; {line}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert "allow larger files (ulimit -f)" in done.stderr
+    assert "Traceback" not in done.stderr

@@ -1,4 +1,6 @@
+import contextlib
 import http.client
+import socket
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +19,7 @@ def running(tmp_path: Path) -> Iterator[view.Server]:
     (folder / "blocks" / "1.glb").write_bytes(b"glTF")
     (tmp_path / "secret").write_text("secret")
     (folder / "link").symlink_to(tmp_path / "secret")
+    (folder / "circle").symlink_to("circle")
     with view.server(view.site_of(tmp_path / "city")) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield server
@@ -56,6 +59,12 @@ def test_files_come_with_their_types(running: view.Server) -> None:
         "//etc/passwd",
         "/blocks/",
         "/nowhere",
+        "/%00",
+        "/blocks/%00.glb",
+        "/%ed%b0%80",
+        "/%ff",
+        "/circle",
+        "/" + "a" * 900,
     ],
 )
 def test_nothing_else_is_served(running: view.Server, path: str) -> None:
@@ -68,6 +77,58 @@ def test_nothing_else_is_served(running: view.Server, path: str) -> None:
 def test_another_hosts_name_is_refused(running: view.Server) -> None:
     answer, _ = got(running, "/", host="evil.example")
     assert answer.status == 403
+
+
+def said(server: view.Server, request: bytes) -> bytes:
+    """Say anything to a server, and read the first line of its answer."""
+    address = ("127.0.0.1", server.server_address[1])
+    with socket.create_connection(address, timeout=10) as connection:
+        connection.sendall(request)
+        return connection.makefile("rb").readline()
+
+
+@pytest.mark.parametrize("letters", [1_001, 60_000, 70_000])
+def test_a_path_without_an_end_is_refused(running: view.Server, letters: int) -> None:
+    host = f"Host: localhost:{running.server_address[1]}"
+    request = f"GET /{'a' * letters} HTTP/1.1\r\n{host}\r\n\r\n"
+    assert b" 414 " in said(running, request.encode())
+
+
+@pytest.mark.parametrize("request_", [b"\x16\x03\x01\r\n", b"GET / HTTP/9.9\r\n"])
+def test_what_is_no_request_is_told_so(
+    running: view.Server, request_: bytes, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = said(running, request_ + b"\r\n")
+    assert b" 400 " in line or b" 505 " in line or line.startswith(b"<")
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("begun", [b"", b"GET / HT"])
+def test_idle_connections_keep_no_visitor_out(
+    running: view.Server, begun: bytes
+) -> None:
+    address = ("127.0.0.1", running.server_address[1])
+    with contextlib.ExitStack() as opened:
+        for _ in range(300):
+            idle = socket.create_connection(address, timeout=10)
+            opened.enter_context(idle).sendall(begun)
+        assert got(running, "/")[0].status == 200
+        handlers = [t for t in threading.enumerate() if "process_request" in t.name]
+        assert len(handlers) <= 2 * view.MOST_OPEN  # some are about to end
+
+
+def test_a_connection_in_use_outlives_idle_ones(running: view.Server) -> None:
+    port = running.server_address[1]
+    used = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    with contextlib.ExitStack() as opened:
+        for _ in range(10):
+            used.request("GET", "/")
+            assert used.getresponse().read() == b"{}"
+            for _ in range(view.MOST_OPEN // 2):
+                idle = socket.create_connection(("127.0.0.1", port), timeout=10)
+                opened.enter_context(idle)
+        assert used.sock is not None
+    used.close()
 
 
 def test_only_this_machine_is_served(running: view.Server) -> None:

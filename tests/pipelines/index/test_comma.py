@@ -1,4 +1,9 @@
+import csv
+import io
+
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from pipelines.index.comma import NoTable, blank, parsed, written
 
@@ -13,12 +18,45 @@ def test_neither_line_ends_nor_a_mark_at_the_start_matter(end: str, mark: str) -
     assert parsed((mark + TEXT.replace("\n", end)).encode()) == (NAMES, ROWS)
 
 
-@pytest.mark.parametrize(
-    "name", ["a\rb", "a\nb", "a\r\nb", 'a"b', "a,b", " a ", "=1+1", "\x1bb", "é"]
-)
-def test_what_was_written_is_read_back(name: str) -> None:
-    rows = [{"photo": name, "remark": name}, *ROWS]
-    assert parsed(written(NAMES, rows).encode()) == (NAMES, rows)
+CELLS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))
+RUN = st.text("'=+-@\t\r\n\uff1d\uff0b\uff0d\uff201.5e,\"x ", max_size=6)
+
+
+@given(CELLS | RUN, CELLS | RUN)
+@example("a\rb", "a\r\nb")
+@example('a"b', "a,b")
+@example("=cmd|' /C calc'!A0", "'=1+1")
+@example("-73.98", "'-73.98")
+def test_what_was_written_is_read_back(photo: str, remark: str) -> None:
+    rows = [{"photo": photo, "remark": remark}, *ROWS]
+    assert parsed(written(NAMES, rows).encode(), ours=True) == (NAMES, rows)
+
+
+@given(RUN)
+@example("=cmd|' /C calc'!A0")
+@example("\t=1+1")
+@example("@SUM(A1)")
+@example("+1-1")
+def test_no_cell_is_written_that_a_spreadsheet_would_run(cell: str) -> None:
+    text = io.StringIO(written([cell], [{cell: cell}]), newline="")
+    for (seen,) in csv.reader(text):
+        assert not seen.startswith(("=", "@", "\t", "\r", "\n", "\uff1d", "\uff20"))
+        assert seen[:1] not in {"+", "-"} or abs(float(seen)) >= 0
+
+
+@pytest.mark.parametrize("number", ["-73.98", "+1", "-1e-7", "-.5", "40.75"])
+def test_a_number_is_written_as_it_is(number: str) -> None:
+    assert written(["a"], [{"a": number}]) == f"a\n{number}\n"
+
+
+def test_a_cell_of_ten_million_letters_is_read() -> None:
+    _, rows = parsed(b"photo,remark\na.jpg," + b"x" * 10_000_000 + b"\nb.jpg,\n")
+    assert [len(row["remark"]) for row in rows] == [10_000_000, 0]
+
+
+def test_a_quote_that_is_not_closed_is_told_by_its_row() -> None:
+    with pytest.raises(NoTable, match="row 3"):
+        parsed(b'photo\na.jpg\n"b.jpg\n' + b"c.jpg\n" * 100_000)
 
 
 def test_an_empty_line_is_a_row_in_which_nothing_is_written() -> None:
@@ -36,7 +74,7 @@ def test_what_stands_beyond_the_last_column_is_kept_apart() -> None:
     [
         (TEXT.encode("utf-16"), "save it as CSV in UTF-8"),
         ("photo\né".encode("latin-1"), "save it as CSV in UTF-8"),
-        (b'photo\n"a', "save it anew"),
+        (b'photo\n"a', "mend its quotes"),
         (b"photo;remark\na.jpg;torn\n", "save it with commas"),
         (b"photo,lot,photo\na,1,b\n", "'photo': rename or delete"),
     ],

@@ -1,12 +1,17 @@
+import csv
+import io
 import os
 from pathlib import Path
 
 import pytest
 
 from pipelines.index import manifest
-from pipelines.index.index import Indexed, Nothing, block_and_lot, index
+from pipelines.index.images import Nothing
+from pipelines.index.index import Indexed, block_and_lot, index
+from pipelines.index.roots import located
 from pipelines.store.store import Store
 from tests.data import DATA, needs_data
+from tests.pipelines.hostile import hostile
 
 CATALOGUE = """photo,block,lot,street,address,width_m,remark
 b/993_1.jpg,993,1,First Street,1,10,
@@ -29,7 +34,7 @@ def photos(tmp_path: Path) -> Path:
 def indexed(photos: Path, text: str | None, **options: object) -> Indexed:
     listed = photos.parent / "list.csv"
     if text is not None:
-        listed.write_text(text)
+        listed.write_text(text, newline="")
     city = str(photos.parent / "city")
     return index(photos, listed if text is not None else None, city, **options)  # type: ignore[arg-type]
 
@@ -161,7 +166,7 @@ def test_a_file_whose_name_is_no_text_is_named_and_spoils_no_other(
     assert [one.key for one in made.rejections] == ["\\xff.jpg"]
     (folder / "5_1.jpg").unlink()
     (folder / "two\nlines.jpg").unlink()
-    with pytest.raises(Nothing, match="rename the files"):
+    with pytest.raises(Nothing, match="rename the file"):
         indexed(folder, None)
 
 
@@ -176,12 +181,137 @@ def test_a_folder_whose_name_is_no_block_s_is_a_row_all_the_same(
     assert (made.photos, made.fronts, made.rejections) == (1, 1, ())
 
 
-def test_names_of_which_none_makes_sense_are_told_by_the_first(tmp_path: Path) -> None:
-    folder = tmp_path / "photos" / " "
-    folder.mkdir(parents=True)
-    (folder / "bakery.jpg").write_bytes(b"x")
-    with pytest.raises(Nothing, match="file names row 2: path outside"):
-        indexed(tmp_path / "photos", None)
+NAMES = (
+    " a.jpg",
+    "a .jpg",
+    "b.jpg ",
+    "\tc.jpg",
+    "d\n.jpg",
+    "\u00a0e.jpg",
+    "c:x.jpg",
+    "..\\x.jpg",
+    "=cmd|calc.jpg",
+    "'=y.jpg",
+    " /bakery.jpg",
+    "folder\n/ f.jpg",
+)
+
+
+def write(folder: Path, *names: str) -> Path:
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(b"x")
+    return folder
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("listed", [True, False])
+@pytest.mark.parametrize("mended", [True, False])
+def test_a_name_that_is_legal_on_disk_is_found_by_name(
+    tmp_path: Path,
+    name: str,
+    listed: bool,  # noqa: FBT001
+    mended: bool,  # noqa: FBT001
+) -> None:
+    folder = write(tmp_path / "photos ", name)
+    table = io.StringIO(newline="")
+    csv.writer(table).writerows([("photo", "block", "lot"), (name, 1, 1)])
+    made = indexed(folder, table.getvalue() if listed else None)
+    assert (made.photos, made.without_front, made.rejections) == (1, (), ())
+    city = tmp_path / "city"
+    if mended:
+        (city / manifest.PARQUET).unlink()
+    found = manifest.read(Store(str(city)))
+    (row,) = located(found, str(city), ()).rows
+    assert Path(row.root, row.photo) == folder / name
+
+
+def test_blanks_that_no_name_has_are_no_part_of_it(tmp_path: Path) -> None:
+    folder = write(tmp_path / "photos", "5_1.jpg")
+    city = tmp_path / "city"
+    indexed(folder, None)
+    text = (city / manifest.CSV).read_text()
+    (city / manifest.CSV).write_text(
+        text.replace("photos,5_1.jpg", "photos , 5_1.jpg ")
+    )
+    (row,) = located(manifest.read(Store(str(city))), str(city), ()).rows
+    assert Path(row.root, row.photo) == folder / "5_1.jpg"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device", "holes"])
+def test_a_catalogue_that_has_no_end_is_refused_by_name(
+    photos: Path, kind: str
+) -> None:
+    hostile(photos.parent / "list.csv", kind)
+    with pytest.raises(Nothing, match=r"list\.csv: (Not a regular|Larger than)"):
+        index(photos, photos.parent / "list.csv", str(photos.parent / "city"))
+
+
+def test_what_is_no_file_is_named_and_spoils_no_other(photos: Path) -> None:
+    hostile(photos / "pipe.jpg", "pipe")
+    (photos / "gone.jpg").symlink_to("nowhere")
+    (photos / "link").symlink_to(photos / "b")
+    made = indexed(photos, CATALOGUE)
+    assert made.photos == 3
+    assert [(one.key, one.reason) for one in made.rejections] == [
+        ("gone.jpg", "no regular file"),
+        ("link", "link to a folder"),
+        ("pipe.jpg", "no regular file"),
+    ]
+
+
+def test_a_folder_that_can_not_be_read_is_named(photos: Path) -> None:
+    deep = photos
+    while len(str(deep)) < 4000:  # a path that the system refuses, whoever asks
+        deep = deep / ("x" * 200)
+        deep.mkdir()
+    before = os.open(deep, os.O_RDONLY)
+    os.mkdir("y" * 200, dir_fd=before)
+    os.close(before)
+    (one,) = indexed(photos, CATALOGUE).rejections
+    assert one.reason == "unreadable folder"
+    assert one.key.endswith("y" * 200)
+
+
+def test_folders_may_be_deeper_than_python_calls(photos: Path) -> None:
+    folders = [f"{photos}{'/x' * depth}" for depth in range(1, 1501)]
+    for folder in folders:
+        Path(folder).mkdir()
+    image = Path(folders[-1], "9_1.jpg")
+    image.write_bytes(b"x")
+    try:
+        assert indexed(photos, None).photos == 4
+    finally:  # who cleans up calls as deep
+        image.unlink()
+        for folder in reversed(folders):
+            Path(folder).rmdir()
+
+
+def test_a_cell_that_is_too_long_costs_its_row_alone(photos: Path) -> None:
+    made = indexed(photos, CATALOGUE.replace("torn", "x" * 10_000_000))
+    (row, photo) = made.rejections
+    assert (row.key, row.reason) == ("list.csv row 3", "cell too long")
+    assert "'remark' has 10,000,000 letters" in row.detail
+    assert (photo.key, made.fronts) == ("b/993_2.jpg", 3)
+
+
+def test_a_block_of_more_lots_than_any_has_is_named_and_spoils_no_other(
+    photos: Path,
+) -> None:
+    rows = "".join(f",7,{lot},Elm Street,{lot},8,\n" for lot in range(1, 20_001))
+    made = indexed(photos, CATALOGUE + rows)
+    (one,) = made.rejections
+    assert (one.key, one.reason) == ("block 7", "20,000 lots")
+    assert (made.photos, made.fronts, made.blocks) == (3, 4, 2)
+    with pytest.raises(Nothing, match="block 7: 20,000 lots"):
+        indexed(photos, CATALOGUE.splitlines()[0] + "\n" + rows)
+
+
+def test_what_is_indexed_of_the_largest_block_can_be_built(photos: Path) -> None:
+    rows = "".join(f",7,{lot},Elm Street,{2 * lot},8,\n" for lot in range(1, 10_000))
+    made = indexed(photos, CATALOGUE.splitlines()[0] + "\n" + rows)
+    found = manifest.read(Store(str(photos.parent / "city")))
+    assert (made.fronts, found.rejections) == (9_999, ())
 
 
 def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:

@@ -1,11 +1,13 @@
 import re
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from nostalgin_core.catalogue.entry import inside
 from nostalgin_core.records import Front
-from pipelines.index import cells, manifest
+from pipelines.index import cells, comma, manifest
 from pipelines.index.manifest import Unusable
 from pipelines.store.store import Store
 from tests.data import ROOT
@@ -108,10 +110,16 @@ def test_unknown_columns_are_kept_with_a_warning(store: Store) -> None:
 
 @pytest.mark.parametrize(
     "path",
-    ["../a.jpg", "b/../../a.jpg", "/etc/a.jpg", "C:\\a.jpg", "..\\a.jpg", "a\0.jpg"],
+    ["../a.jpg", "b/../../a.jpg", "/etc/a.jpg", "a\0.jpg"],
 )
 def test_a_path_that_leads_outside_is_inside_nothing(path: str) -> None:
     assert not inside(path)
+
+
+@pytest.mark.parametrize("path", ["c:a.jpg", "C:\\a.jpg", "..\\a.jpg", "\\a.jpg"])
+def test_drives_and_backslashes_lead_outside_on_windows_alone(path: str) -> None:
+    assert inside(path)
+    assert not inside(path, windows=True)
 
 
 @pytest.mark.parametrize("path", ["a.jpg", "b/a.jpg", "b/..a.jpg", "a..b.jpg", ""])
@@ -136,6 +144,7 @@ def test_a_path_below_is_inside(path: str) -> None:
         (("False", "perhaps"), "nonsense cell", "perhaps"),
         (("993-1-0,993", "993-1-0,"), "nonsense cell", "block is empty"),
         (("561-565", "561,565"), "", ""),
+        (("561-565", "5" * 10_000_000), "cell too long", "10,000,000 letters"),
     ],
 )
 def test_a_bad_row_is_named_and_spoils_no_other(
@@ -191,6 +200,35 @@ def test_nonsense_is_refused_by_name(store: Store, data: bytes) -> None:
 def test_a_broken_parquet_file_is_refused_by_name(store: Store) -> None:
     (Path(store.root) / manifest.PARQUET).write_bytes(b"PAR1nonsense")
     with pytest.raises(Unusable, match=r"manifest\.parquet"):
+        manifest.read(store)
+
+
+def test_parquet_whose_words_are_no_text_is_refused_by_name(store: Store) -> None:
+    path = Path(store.root) / manifest.PARQUET
+    table = pq.read_table(path)
+    odd = pa.array([b"\xff.jpg"] * table.num_rows, pa.binary())
+    words = pa.Array.from_buffers(pa.string(), len(odd), odd.buffers())
+    pq.write_table(table.set_column(1, "photo", words), path)
+    with pytest.raises(Unusable, match=r"manifest\.parquet is no Parquet file"):
+        manifest.read(store)
+
+
+def test_parquet_that_claims_more_rows_than_a_city_has_is_refused(store: Store) -> None:
+    path = Path(store.root) / manifest.PARQUET
+    rows = pa.table({"photo": pa.nulls(comma.MOST_ROWS + 1, pa.string())})
+    pq.write_table(rows, path)
+    assert path.stat().st_size < 1_000_000
+    with pytest.raises(Unusable, match="more than 5,000,000 rows"):
+        manifest.read(store)
+
+
+def test_a_word_that_is_repeated_without_end_is_refused(store: Store) -> None:
+    path = Path(store.root) / manifest.PARQUET
+    numbers, words = pa.array([0] * 20_000, pa.int32()), pa.array(["x" * 100_000])
+    photos = pa.DictionaryArray.from_arrays(numbers, words)  # 2 GB, if written out
+    pq.write_table(pa.table({"photo": photos}), path)
+    assert path.stat().st_size < 1_000_000
+    with pytest.raises(Unusable, match="Larger than the 250,000,000 bytes"):
         manifest.read(store)
 
 

@@ -4,8 +4,9 @@ import pytest
 
 from nostalgin_core.records import Front
 from pipelines.build.options import options, part
-from pipelines.index.manifest import Row
-from pipelines.index.plan import falls_to, plan, rooted
+from pipelines.index.plan import falls_to, plan
+from pipelines.index.roots import rooted
+from pipelines.index.row import Row
 
 FRONT = Front("1-1-0", "1", "1", 0, 0, 0, "Elm Street", "1", 8.0, None, False)  # noqa: FBT003
 
@@ -82,6 +83,7 @@ def test_a_relative_photo_folder_counts_from_the_city() -> None:
     assert rooted("../photos", "/home/city") == "/home/photos"
     assert rooted("/photos", "/home/city") == "/photos"
     assert rooted("s3://bucket/photos", "/home/city") == "s3://bucket/photos"
+    assert rooted("../photos", "s3://bucket/city/") == "s3://bucket/photos"
 
 
 @pytest.mark.parametrize("shard", ["0/3", "4/3", "3", "a/b", "1/0", "-1/2"])

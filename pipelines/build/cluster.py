@@ -1,0 +1,97 @@
+"""Runners of clusters: what they need is asked for before they are.
+
+Beam waits minutes, or for ever, for a host that does not answer, and tells of a lacking
+package only where it is used, deep in a traceback.
+"""
+
+import importlib
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final
+
+import grpc
+from apache_beam.options.pipeline_options import (
+    FlinkRunnerOptions,
+    PipelineOptions,
+    PortableOptions,
+    StandardOptions,
+)
+
+from pipelines.build.embedded import EMBEDDED
+
+WAIT_S: Final = 6.0  # for a host; one that is there answers in a second
+DATAFLOW: Final = "apache_beam.runners.dataflow.internal.apiclient"
+LINES: Final = 8  # of what a runner says
+WITHIN: Final = ("embed", "[local]", "[auto]", "")  # the runner starts it by itself
+TROUBLES: Final = (  # what Beam's runners were seen to end with
+    ValueError,
+    ImportError,
+    AttributeError,
+    OSError,
+    RuntimeError,
+    grpc.RpcError,
+    grpc.FutureTimeoutError,
+)
+
+
+class Unrun(RuntimeError):  # noqa: N818 - it reads as what it is about
+    """A cluster that did not answer, or gave up."""
+
+
+def equipped(runner: str) -> None:
+    """Insist on the packages that a runner needs beside Beam.
+
+    Raises:
+        ValueError: if one lacks.
+    """
+    if "dataflow" not in runner.casefold():
+        return
+    try:
+        importlib.import_module(DATAFLOW)
+    except ImportError as problem:
+        remedy = "install apache-beam[gcp]"
+        raise ValueError(f"--runner {runner}: {problem}; {remedy}") from problem
+
+
+def reached(options: PipelineOptions) -> None:
+    """Insist that the host of a job answers, if one is named.
+
+    Raises:
+        Unrun: if it does not, within `WAIT_S`.
+    """
+    if options.view_as(StandardOptions).runner == EMBEDDED:
+        return
+    job = options.view_as(PortableOptions).job_endpoint or ""
+    if job not in WITHIN:
+        with grpc.insecure_channel(job) as channel:
+            try:
+                grpc.channel_ready_future(channel).result(timeout=WAIT_S)
+            except grpc.FutureTimeoutError as problem:
+                raise Unrun(dead("--job_endpoint", job, "no answer")) from problem
+    flink = options.view_as(FlinkRunnerOptions).flink_master or ""
+    if flink not in WITHIN:
+        host, _, port = flink.rpartition("://")[2].rstrip("/").rpartition(":")
+        try:
+            socket.create_connection((host or port, port), WAIT_S).close()
+        except (OSError, ValueError) as problem:
+            raise Unrun(dead("--flink_master", flink, str(problem))) from problem
+
+
+def dead(option: str, where: str, why: str) -> str:
+    """Tell that nobody answers, and what to do."""
+    return f"{option}={where}: {why}; start it there, or mend the address"
+
+
+@contextmanager
+def told(runner: str) -> Iterator[None]:
+    """Tell in a line that a cluster's runner gave up; it has pages of its own.
+
+    Raises:
+        Unrun: if it did.
+    """
+    try:
+        yield
+    except TROUBLES as problem:
+        words = "; ".join(str(problem).split("\n")[:LINES]) or type(problem).__name__
+        raise Unrun(f"--runner {runner} gave up: {words}") from problem

@@ -1,0 +1,89 @@
+"""Where a row's photo lies: under a root that the user allowed, by its very name.
+
+A manifest may come from anybody, so that it must not send this machine to hosts of its
+choice. A name may begin or end with a blank, and so may a cell in which none was meant:
+what is on disk tells which.
+"""
+
+import os
+import posixpath
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+from nostalgin_core.records import Rejection
+from pipelines.index.manifest import Manifest
+from pipelines.index.row import Row
+from pipelines.store import Store
+
+LOCAL: Final = "file"
+SHOWN: Final = 80  # letters of a root in a message
+
+
+def located(found: Manifest, city: str, schemes: Sequence[str]) -> Manifest:
+    """Find each row's photo; a row whose root has another scheme is rejected.
+
+    The scheme of the city folder itself is allowed, for the user named it.
+    """
+    allowed = {LOCAL, scheme_of(city) or LOCAL, *(one.casefold() for one in schemes)}
+    foreign = [row for row in found.rows if beyond(row, allowed)]
+    strange = {row.number for row in foreign}
+    rows = tuple(spelt(row, city) for row in found.rows if row.number not in strange)
+    rejections = (*found.rejections, *map(refused, foreign))
+    return replace(found, rows=rows, rejections=rejections)
+
+
+def scheme_of(root: str) -> str:
+    """Tell the scheme of a URI in small letters; a path has none."""
+    scheme, mark, _ = root.strip().partition("://")
+    return scheme.casefold() if mark else ""
+
+
+def beyond(row: Row, allowed: set[str]) -> bool:
+    """Tell whether a row names a scheme that is not allowed."""
+    return "://" in row.root and scheme_of(row.root) not in allowed
+
+
+def refused(row: Row) -> Rejection:
+    """Tell which scheme is not allowed, and how to allow it."""
+    scheme = scheme_of(row.root)
+    return Rejection(
+        row.key,
+        "manifest",
+        "scheme not allowed",
+        f"{row.root[:SHOWN]!r} is not on this machine: build with --allow-scheme "
+        f"{scheme[:SHOWN]} if you trust it, or copy the photos and mend the root",
+    )
+
+
+def spelt(row: Row, city: str) -> Row:
+    """Take a row's blanks for part of its names where such a file is there."""
+    trimmed = replace(row, root=row.root.strip(), photo=row.photo.strip())
+    if not row.photo or trimmed == row:
+        return trimmed
+    for one in (
+        row,
+        replace(row, root=trimmed.root),
+        replace(row, photo=trimmed.photo),
+    ):
+        if is_there(one, city):
+            return one
+    return trimmed
+
+
+def is_there(row: Row, city: str) -> bool:
+    """Tell whether a row's photo is a file; where nobody answers, it is none."""
+    try:
+        return Store(rooted(row.root, city)).exists(row.photo)
+    except (OSError, ValueError):  # no answer, or no name
+        return False
+
+
+def rooted(root: str, city: str) -> str:
+    """Resolve a photo folder that is written relative to the city folder."""
+    if "://" in root or os.path.isabs(root):  # noqa: PTH117 - may be no local path
+        return root
+    if scheme_of(city):
+        scheme, _, path = city.partition("://")
+        return f"{scheme}://{posixpath.normpath(f'{path}/{root}')}"
+    return os.path.normpath(os.path.join(city, root))  # noqa: PTH118
