@@ -1,19 +1,23 @@
 """What a build is told, as Beam options, so that any runner's launcher can tell it."""
 
 import argparse
+import socket
 from collections.abc import Sequence
 from typing import Any, Final
 
 from apache_beam.options.pipeline_options import (
     DirectOptions,
     PipelineOptions,
+    PortableOptions,
     StandardOptions,
 )
-from apache_beam.runners.runner import create_runner
+from apache_beam.runners.runner import PipelineRunner, create_runner
 
 from pipelines.build.embedded import EMBEDDED
 
 OURS: Final = ("--city", "--models", "--shard")
+ANSWER_S: Final = 10.0
+DIGITS: Final = 9  # of a part's number
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
 
@@ -65,9 +69,11 @@ def known(runner: str, beam: Sequence[str]) -> None:
         ValueError: if there is no such runner or option.
     """
     try:
-        create_runner(runner)
-    except (ImportError, AttributeError) as problem:
+        made = create_runner(runner)
+    except (ImportError, AttributeError, TypeError, ValueError) as problem:
         raise ValueError(f"--runner {runner}: {problem}") from problem
+    if not isinstance(made, PipelineRunner):  # Beam takes the path of any function
+        raise ValueError(f"--runner {runner}: it is no runner")  # noqa: TRY004
     if runner != EMBEDDED:
         return
     parser: Any = argparse.ArgumentParser(
@@ -80,9 +86,29 @@ def known(runner: str, beam: Sequence[str]) -> None:
         raise ValueError(f"{strangers[0]}: neither nostalgin nor Beam knows it")
 
 
+def reached(options: PipelineOptions) -> None:
+    """Insist on a job service that answers, where one is named.
+
+    Beam itself waits for it a minute, and then fails with its own words.
+
+    Raises:
+        ConnectionError: if nobody answers.
+    """
+    address = options.view_as(PortableOptions).job_endpoint or ""
+    host, _, port = address.rpartition(":")
+    if not (host and port.isdecimal()):  # "embed", or a name that gRPC resolves
+        return
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), ANSWER_S).close()
+    except (OSError, OverflowError) as problem:
+        remedy = "start the job service, or mend the address"
+        raise ConnectionError(f"--job_endpoint {address}: {problem}; {remedy}") from None
+
+
 def part(shard: str) -> tuple[int, int]:
     """Read "3/16" as the third of sixteen parts; an empty text is all in one part."""
     k, _, n = (shard or "1/1").partition("/")
-    if not (k.isdecimal() and n.isdecimal() and 1 <= int(k) <= int(n)):
+    counts = k.isdecimal() and n.isdecimal() and max(len(k), len(n)) <= DIGITS
+    if not (counts and 1 <= int(k) <= int(n)):
         raise ValueError(f"--shard {shard}: write it as 3/16, the third of 16 parts")
     return int(k), int(n)

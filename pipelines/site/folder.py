@@ -35,7 +35,7 @@ def written(root: Path) -> frozenset[str]:
         return frozenset()
     try:
         names = json.loads((root / RECORD).read_bytes())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):  # the last of one nested deep
         names = None
     if not isinstance(names, list) or not all(map(inside, names)):
         raise Foreign(

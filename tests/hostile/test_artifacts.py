@@ -1,0 +1,87 @@
+"""A damaged artifact is never taken for a sound one, and is made anew."""
+
+import hashlib
+import shutil
+from pathlib import Path
+
+import pyarrow as pa
+import pytest
+
+from pipelines.site import folder as site_folder
+from pipelines.store import Store, Unstored
+from tests.hostile import artifacts
+from tests.hostile.artifacts import PATH, TABLE, Damage
+from tests.hostile.case import BUILD_S, marks, parameters
+from tests.hostile.conftest import Told, nostalgin
+
+
+def found(store: Store, path: str) -> pa.Table | None:
+    """Read an artifact; none if it is as good as absent, or told to be damaged."""
+    try:
+        if store.verdict(path) is False:
+            return None
+        return store.read_table(path)
+    except ValueError as damage:
+        assert type(damage).__module__.startswith("pipelines."), repr(damage)
+        assert path in str(damage)
+        return None
+
+
+@pytest.mark.parametrize("damage", parameters("artifact", artifacts.cases()))
+def test_damage(damage: Damage, tmp_path: Path) -> None:
+    store = artifacts.kept(tmp_path)
+    damage.spoil(tmp_path / PATH)
+    assert found(store, PATH) is None
+    store.keep(PATH, TABLE)
+    again = found(store, PATH)
+    assert again is not None
+    assert again.equals(TABLE)
+
+
+def test_a_folder_in_the_place_of_an_artifact_is_told_by_its_name(
+    tmp_path: Path,
+) -> None:
+    store = artifacts.kept(tmp_path)
+    (tmp_path / PATH).unlink()
+    (tmp_path / PATH / "within").mkdir(parents=True)
+    assert found(store, PATH) is None
+    with pytest.raises(Unstored, match="0011.parquet"):
+        store.keep(PATH, TABLE)
+
+
+def tree(city: Path) -> dict[str, str]:
+    """Hash what a build makes of a city, but for what tells the time."""
+    return {
+        path.relative_to(city).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for name in ("artifacts", "site")
+        for path in sorted((city / name).rglob("*"))
+        if path.is_file() and path.name != site_folder.RECORD
+    }
+
+
+HEALED = "a damaged city is built as it was"
+
+
+@pytest.mark.parametrize(
+    "case", [pytest.param(HEALED, marks=marks("artifact", HEALED, BUILD_S))]
+)
+def test_healing(case: str, told: Told, tmp_path: Path) -> None:
+    """Damage one artifact of each stage, and of the site a model and a thumbnail."""
+    city = tmp_path / case
+    shutil.copytree(told.folder / "city", city)
+    before = tree(city)
+    kinds = artifacts.cases()[:12]
+    for number, stage in enumerate(artifacts.STAGES):
+        file = max((city / "artifacts" / stage).rglob("*.parquet"), key=size)
+        kinds[2 * number].spoil(file)
+    for name in ("*.glb", "*.webp"):
+        file = max((city / "site").rglob(name), key=size)
+        artifacts.zeroed(0.5)(file)
+    words = ("--models", told.folder / "models", "--max-rejected", 1)
+    code, _ = nostalgin("build", city, *words)
+    assert code == 0
+    assert tree(city) == before
+
+
+def size(path: Path) -> int:
+    return path.stat().st_size
