@@ -101,8 +101,10 @@ def reached(options: PipelineOptions) -> None:
     try:
         socket.create_connection((host.strip("[]"), int(port)), ANSWER_S).close()
     except (OSError, OverflowError) as problem:
-        remedy = "start the job service, or mend the address"
-        raise ConnectionError(f"--job_endpoint {address}: {problem}; {remedy}") from None
+        raise ConnectionError(
+            f"--job_endpoint {address}: {problem}; start the job service, or mend the "
+            "address"
+        ) from problem
 
 
 def part(shard: str) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""One city of hostile photographs, names and a few good ones, indexed and built once."""
+"""One city of hostile photographs, names and rows beside good ones, built once."""
 
 import csv
 import json

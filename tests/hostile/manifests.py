@@ -156,12 +156,24 @@ def read_as_parquet() -> list[Case]:
         "ring bytes": (encoded(table(ring=pa.array([b"\xff"]))), (row, "ring")),
         "ring yes": (encoded(table(ring=pa.array([True]))), (row, "ring")),
         "ring below zero": (encoded(table(ring=pa.array([-1]))), (row, "ring")),
-        "width no number": (encoded(table(width_m=pa.array([float("nan")]))), (row, "width")),
-        "width endless": (encoded(table(width_m=pa.array([float("inf")]))), (row, "width")),
-        "width a record": (encoded(table(width_m=pa.array([{"a": 1}]))), (row, "width")),
+        "width no number": (
+            encoded(table(width_m=pa.array([float("nan")]))),
+            (row, "width"),
+        ),
+        "width endless": (
+            encoded(table(width_m=pa.array([float("inf")]))),
+            (row, "width"),
+        ),
+        "width a record": (
+            encoded(table(width_m=pa.array([{"a": 1}]))),
+            (row, "width"),
+        ),
         "all null": (encoded(pa.table({n: pa.nulls(1) for n in ROW})), ("no rows",)),
-        "twin columns": (encoded(table().append_column("photo", pa.array(["x"]))), ("manifest",)),
-    }  # fmt: skip
+        "twin columns": (
+            encoded(table().append_column("photo", pa.array(["x"]))),
+            ("manifest",),
+        ),
+    }
     return [
         Case(f"Parquet: {name}", parquet(data), 1, said)
         for name, (data, said) in kinds.items()
@@ -232,5 +244,8 @@ def rows() -> list[HostileRow]:
         one("block upwards", {"block": "../../outside", "lot": "../.."}),
         one("block a page", {"block": "<script>alert(1)</script>"}),
         one("block of 5000 letters", {"block": "b" * 5000}),
-        one("captions", {"block": "\u202e\u05d0", "street": "x" * 10_000, "credit": "=1"}),
-    ]  # fmt: skip
+        one(
+            "captions",
+            {"block": "\u202e\u05d0", "street": "x" * 10_000, "credit": "=1"},
+        ),
+    ]

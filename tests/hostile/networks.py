@@ -13,6 +13,7 @@ import onnx
 from onnx import TensorProto, helper
 
 from tests.hostile.case import Case, Make
+from tests.hostile.pictures import encoded, street
 from tests.pipelines import painted
 
 LOCK: Final = "models.lock"
@@ -37,10 +38,15 @@ def write_sound(folder: Path, **changed: bytes) -> Path:
 
 
 def explained(spoil: Callable[[Path], object], **changed: bytes) -> Make:
-    """Explain a sound photograph with spoiled networks."""
+    """Explain a sound photograph with spoiled networks.
+
+    In a small one no facade is found, and its inpainting, which takes time, not asked.
+    """
+    small = "inpaint" not in changed
 
     def make(folder: Path) -> list[object]:
-        (folder / "photo.png").write_bytes(painted.photo())
+        photo = encoded(street(), "PNG") if small else painted.photo()
+        (folder / "photo.png").write_bytes(photo)
         spoil(write_sound(folder / "models", **changed))
         options = ["-o", "out", "--models", "models", "--no-placard"]
         return ["explain", "photo.png", *options]
@@ -183,6 +189,7 @@ def relocks() -> list[Case]:
         "masks": np.zeros((0, 28, 28), np.float32),
     }
     nan = np.full((3, 4), np.nan, np.float32)
+    strange = np.array([77, -1, 2**40])
     segment = {
         "empty": b"",
         "cut in half": whole[: len(whole) // 2],
@@ -196,6 +203,8 @@ def relocks() -> list[Case]:
         "one output": asking("image"),
         "boxes of three": answering(boxes=np.zeros((3, 3), np.float32)),
         "more boxes than scores": answering(boxes=np.zeros((9, 4), np.float32)),
+        "boxes no numbers": answering(boxes=nan),
+        "labels of nothing": answering(labels=strange),
         "masks flat": answering(masks=np.zeros((3, 28), np.float32)),
     }
     inpaint = {
@@ -212,12 +221,5 @@ def relocks() -> list[Case]:
             Case(f"relocked inpaint: {n}", relocked(inpaint=d), 1, other)
             for n, d in inpaint.items()
         ),
-        Case(
-            "labels unknown",
-            relocked(segment=answering(labels=np.array([77, -1, 2**40]))),
-            0,
-            **fine,
-        ),
         Case("sees nothing", relocked(segment=answering(**none)), 0, **fine),
-        Case("boxes no numbers", relocked(segment=answering(boxes=nan)), 0, **fine),
     ]

@@ -112,12 +112,23 @@ def of_index() -> list[Case]:
         Case("index: closed", indexed(closed("city")), 1, ("city",)),
         Case("index: mended", indexed(mended), 1, ("--force",)),
         Case("index: sparse file of 3 GB", indexed(sparse), 1, ("manifest.csv",)),
-        Case("index: folder", indexed(folder_at("city/manifest.csv")), 1, ("city",), "city"),
+        Case(
+            "index: folder",
+            indexed(folder_at("city/manifest.csv")),
+            1,
+            ("city",),
+            "city",
+        ),
         Case("index: link", indexed(linked("city/manifest.parquet", up)), **sound),
         Case("index: loop", indexed(linked("city/manifest.parquet", ".")), **sound),
         Case("index: a link to itself", indexed(linked("city", "city")), 1, ("city",)),
-        Case("index: a link to nowhere", indexed(linked("city", "no/where")), 1, ("city",)),
-    ]  # fmt: skip
+        Case(
+            "index: a link to nowhere",
+            indexed(linked("city", "no/where")),
+            1,
+            ("city",),
+        ),
+    ]
 
 
 def of_explain() -> list[Case]:
@@ -126,11 +137,17 @@ def of_explain() -> list[Case]:
         Case("explain: a file", explained(occupied("out")), 1, ("out",)),
         Case("explain: nowhere", explained(bool, PROC), 1, (PROC,)),
         Case("explain: closed", explained(closed("out")), 1, ("out",)),
-        Case("explain: folder", explained(folder_at("out/panel.png")), 1, ("out",), "out"),
-        Case("explain: linked picture", explained(linked("out/panel.png", up)), **sound),
-        Case("explain: linked record", explained(linked("out/explain.json", up)), **sound),
+        Case(
+            "explain: folder", explained(folder_at("out/panel.png")), 1, ("out",), "out"
+        ),
+        Case(
+            "explain: linked picture", explained(linked("out/panel.png", up)), **sound
+        ),
+        Case(
+            "explain: linked record", explained(linked("out/explain.json", up)), **sound
+        ),
         Case("explain: a link to itself", explained(linked("out", "out")), 1, ("out",)),
-    ]  # fmt: skip
+    ]
 
 
 def of_build() -> list[Case]:
@@ -138,17 +155,35 @@ def of_build() -> list[Case]:
     texts = ["", "{", "{}", "null", '["../x"]', "[1]", '["/x"]', "[" * 100_000, "\0"]
     up = {"writes": "city"}
     return [
-        Case("build: site of another", built(occupied("city/site/index.html")), 1, (foreign,)),
+        Case(
+            "build: site of another",
+            built(occupied("city/site/index.html")),
+            1,
+            (foreign,),
+        ),
         Case("build: site a file", built(occupied("city/site")), 1, ("site",)),
-        Case("build: site a link", built(linked("city/site", "../kept")), 1, ("is a link",)),
+        Case(
+            "build: site a link",
+            built(linked("city/site", "../kept")),
+            1,
+            ("is a link",),
+        ),
         Case("build: runs a file", built(occupied("city/runs")), 1, ("city",)),
-        Case("build: run a link", built(linked("city/runs", "runs")), 1, ("city",), **up),
-        Case("build: artifacts a file", built(occupied("city/artifacts")), 1, ("city",), **up),
+        Case(
+            "build: run a link", built(linked("city/runs", "runs")), 1, ("city",), **up
+        ),
+        Case(
+            "build: artifacts a file",
+            built(occupied("city/artifacts")),
+            1,
+            ("city",),
+            **up,
+        ),
         *(
             Case(f"build: record {text[:9]!r}", built(record(text)), 1, (foreign,))
             for text in texts
         ),
-    ]  # fmt: skip
+    ]
 
 
 def excused(name: str) -> str:

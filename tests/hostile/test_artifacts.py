@@ -22,8 +22,10 @@ def found(store: Store, path: str) -> pa.Table | None:
             return None
         return store.read_table(path)
     except ValueError as damage:
-        assert type(damage).__module__.startswith("pipelines."), repr(damage)
-        assert path in str(damage)
+        if not type(damage).__module__.startswith("pipelines.") or path not in str(
+            damage
+        ):
+            raise
         return None
 
 
@@ -45,7 +47,7 @@ def test_a_folder_in_the_place_of_an_artifact_is_told_by_its_name(
     (tmp_path / PATH).unlink()
     (tmp_path / PATH / "within").mkdir(parents=True)
     assert found(store, PATH) is None
-    with pytest.raises(Unstored, match="0011.parquet"):
+    with pytest.raises(Unstored, match=r"0011\.parquet"):
         store.keep(PATH, TABLE)
 
 

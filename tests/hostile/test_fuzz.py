@@ -28,7 +28,7 @@ from pipelines.index.manifest import Manifest, Row, Unusable
 from pipelines.models import Models, Unlocked
 from pipelines.site.folder import Foreign, written
 from pipelines.store import Store, parquet_bytes
-from tests.hostile import artifacts, catalogues, images
+from tests.hostile import artifacts, catalogues, images, pictures
 from tests.hostile.case import bounded, marks
 
 Bytes = st.SearchStrategy[bytes]
@@ -58,6 +58,11 @@ def marked(name: str) -> Callable[[Any], Any]:
         return test
 
     return apply
+
+
+def named(problem: Exception, *words: str) -> None:
+    """Insist that an error says one of these words."""
+    assert any(word in str(problem) for word in words)
 
 
 @contextlib.contextmanager
@@ -90,22 +95,22 @@ def mutated(draw: st.DrawFn, whole: Callable[[], list[bytes]]) -> bytes:
 
 
 @cache
-def pictures() -> list[bytes]:
+def encodings() -> list[bytes]:
     """Encode a small street in each format and in most of its modes."""
-    small = images.street((64, 72))
-    made = [images.encoded(small, kind) for kind in images.CUTS]
-    made += [images.encoded(small, "JPEG", mode) for mode in ("RGB", "CMYK")]
-    made += [images.encoded(small, "PNG", mode) for mode in ("P", "RGBA", "LA", "1")]
-    made += [images.encoded(small, "TIFF", mode) for mode in ("RGB", "1", "CMYK")]
+    small = pictures.street((64, 72))
+    made = [pictures.encoded(small, kind) for kind in images.CUTS]
+    made += [pictures.encoded(small, "JPEG", mode) for mode in ("RGB", "CMYK")]
+    made += [pictures.encoded(small, "PNG", mode) for mode in ("P", "RGBA", "LA", "1")]
+    made += [pictures.encoded(small, "TIFF", mode) for mode in ("RGB", "1", "CMYK")]
     deflated = {"compression": "tiff_adobe_deflate"}
-    made += [images.encoded(small, "TIFF", **deflated), images.floats("some_nan")]
-    made += [images.turned(6), images.deep(4095, "PNG"), images.paged("GIF", 2)]
+    made += [pictures.encoded(small, "TIFF", **deflated), pictures.floats("some_nan")]
+    made += [pictures.turned(6), pictures.deep(4095, "PNG"), pictures.paged("GIF", 2)]
     return made
 
 
 @timed
 @fuzzed
-@given(data=mutated(pictures))
+@given(data=mutated(encodings))
 def test_photo_bytes(data: bytes) -> None:
     with bounded():
         found = photo.decode(data, name="x.jpg", max_megapixels=4.0)
@@ -144,7 +149,7 @@ def test_csv_bytes(data: bytes) -> None:
     try:
         names, rows = comma.parsed(data)
     except comma.NoTable as problem:
-        assert len(str(problem)) > 20
+        named(problem, "is", "has", "parts")
         return
     assert len(set(filter(None, names))) == len([*filter(None, names)])
     read = catalogue.read(rows, name="list.csv")
@@ -164,7 +169,7 @@ def test_manifest_bytes(data: bytes) -> None:
         try:
             found = manifest.read(Store(str(city)))
         except Unusable as problem:
-            assert manifest.CSV in str(problem)
+            named(problem, manifest.CSV)
         else:
             assert isinstance(found, Manifest)
 
@@ -188,10 +193,13 @@ def test_manifest_rows(cells: dict[str, str]) -> None:
     assert all(isinstance(one, Row) for one in found.rows)
 
 
-JSON: Final = st.recursive(
-    st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=9),
-    lambda inner: st.lists(inner) | st.dictionaries(st.text(max_size=9), inner),
-    max_leaves=9,
+SCALARS: Final = (
+    st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=9)
+)
+LISTS: Final = st.lists(SCALARS, max_size=4)
+JSON: Final = st.one_of(
+    *(SCALARS, LISTS, st.lists(LISTS, max_size=4)),
+    st.dictionaries(st.text(max_size=9), SCALARS | LISTS, max_size=4),
 )
 
 
@@ -212,7 +220,7 @@ def test_lock_bytes(data: bytes) -> None:
         try:
             assert isinstance(Models(str(models)).sha256("segment"), str)
         except Unlocked as problem:
-            assert "models.lock" in str(problem)
+            named(problem, "models.lock")
 
 
 @timed
@@ -225,7 +233,7 @@ def test_record_bytes(data: bytes) -> None:
         try:
             names = written(site)
         except Foreign as problem:
-            assert str(site) in str(problem)
+            named(problem, str(site))
         else:
             for name in names:
                 assert (site / name).resolve().is_relative_to(site.resolve())
@@ -256,7 +264,8 @@ def test_artifact_bytes(data: bytes) -> None:
             if verdict is True:
                 assert isinstance(store.read_table(artifacts.PATH), pa.Table)
         except ValueError as problem:
-            assert type(problem).__module__.startswith("pipelines."), repr(problem)
+            if not type(problem).__module__.startswith("pipelines."):
+                raise
 
 
 @cache
@@ -277,4 +286,4 @@ def test_manifest_parquet_bytes(data: bytes) -> None:
         try:
             assert isinstance(manifest.read(Store(str(city))), Manifest)
         except Unusable as problem:
-            assert "manifest" in str(problem)
+            named(problem, "manifest")

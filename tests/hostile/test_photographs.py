@@ -2,7 +2,6 @@
 
 import csv
 import os
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -140,8 +139,7 @@ def test_a_formula_is_none_in_the_manifest(
 def test_a_photo_that_is_no_file_of_bytes(
     case: folders.Unreadable, tmp_path: Path
 ) -> None:
-    put: Callable[[Path], object] = case.put
-    put(tmp_path / "x.jpg")
+    case.put(tmp_path / "x.jpg")
     with bounded():
         result = read(PhotoRef(str(tmp_path), "x.jpg", ("5",)))
     assert not (tmp_path / folders.WAITED).exists()
