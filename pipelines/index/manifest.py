@@ -125,7 +125,7 @@ def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
     csv, parquet = optional(store, CSV), optional(store, PARQUET)
     told: dict[bytes, bytes] = {}
     if parquet is not None:
-        with contextlib.suppress(pa.ArrowInvalid, OSError):  # what it told is lost
+        with contextlib.suppress(pa.ArrowException, OSError):  # what it told is lost
             told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
     if csv is None:
         return (PARQUET, parquet) if parquet is not None and MENDED in told else None
@@ -204,7 +204,7 @@ def parsed(data: bytes, where: str) -> pa.Table:
     """Parse the Parquet form."""
     try:
         return pq.read_table(io.BytesIO(data))
-    except (pa.ArrowInvalid, OSError) as problem:
+    except (pa.ArrowException, OSError) as problem:
         raise Unusable(
             f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
             f"{CSV} will be read, or run `nostalgin index --force`"

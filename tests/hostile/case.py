@@ -20,6 +20,7 @@ from pipelines.store import Store
 from tests.hostile.still_open import OPEN
 
 MOST_BYTES: Final = 1024**3  # that a command may take for what it reads
+MOST_LETTERS: Final = 1_000_000  # of what is told, however long the input's words
 HANG_S: Final = 20  # in which each answers; it is a guard, no measure
 BUILD_S: Final = 240  # in which a whole build does
 
@@ -53,6 +54,7 @@ def check(case: Case, folder: Path) -> None:
         raise AssertionError(f"{result.exception!r} was raised") from result.exception
     assert result.exit_code == case.code, told
     assert "Traceback" not in told
+    assert len(told) < MOST_LETTERS
     for said in case.says:
         assert bare(said) in bare(told), told
     changed = {name for name, _ in before.items() ^ tree(folder).items()}

@@ -57,7 +57,7 @@ def sparse(path: Path) -> None:
 def broken() -> dict[str, tuple[bytes, str]]:
     """List tables that can't be read at all, with what is told of each."""
     cell = "a" * 10_000_000
-    utf8, anew, no_row = "save it as CSV in UTF-8", "save it anew", "no row that makes"
+    utf8, no_row = "save it as CSV in UTF-8", "no row that makes"
     return {
         "UTF-16": (TABLE.encode("utf-16"), utf8),
         "UTF-16, big end first": (b"\xfe\xff" + TABLE.encode("utf-16-be"), utf8),
@@ -76,11 +76,9 @@ def broken() -> dict[str, tuple[bytes, str]]:
         "block missing": (b"photo,lot\nx.png,1\n", "no block"),
         "lot missing": (b"photo,block\nx.png,1\n", "no lot"),
         "twin columns": (f"photo,{TABLE}".encode(), "two columns 'photo'"),
-        "unclosed quote": ((TABLE + '5_2.png,5,2,"Elm\n').encode(), anew),
-        "letters after a quote": ((TABLE + '"5"_2.png,5,2\n').encode(), anew),
-        "cell of 10 MB": ((TABLE + f"5_2.png,5,2,{cell}\n").encode(), ""),
-        "column of 10 MB": (f"{cell},{TABLE}".encode(), ""),
-        "unclosed quote of 10 MB": ((TABLE + f'"{cell}').encode(), anew),
+        "unclosed quote": ((TABLE + '5_2.png,5,2,"Elm\n').encode(), "is no CSV"),
+        "letters after a quote": ((TABLE + '"5"_2.png,5,2\n').encode(), "is no CSV"),
+        "unclosed quote of 10 MB": ((TABLE + f'"{cell}').encode(), "is no CSV"),
         "semicolons": (TABLE.replace(",", ";").encode(), "save it with commas"),
         "tabs": (TABLE.replace(",", "\t").encode(), "save it with commas"),
         "bars": (TABLE.replace(",", "|").encode(), "save it with commas"),
@@ -95,6 +93,7 @@ def broken() -> dict[str, tuple[bytes, str]]:
 def sound() -> dict[str, bytes]:
     """List tables that are odd, and read all the same."""
     wide = ",".join(f"c{n}" for n in range(2000))
+    cell = "a" * 10_000_000
     return {
         "mark at the start": b"\xef\xbb\xbf" + TABLE.encode(),
         "two marks at the start": b"\xef\xbb\xbf" * 2 + TABLE.encode(),
@@ -107,9 +106,11 @@ def sound() -> dict[str, bytes]:
         + b'"',
         "column without a name": ("," + TABLE.replace("\n5", "\n,5")).encode(),
         "2000 more columns": TABLE.replace("_m\n", f"_m,{wide}\n").encode(),
-        "20,000 empty lines": TABLE.encode() + b"\n" * 20_000,
+        "5000 empty lines": TABLE.encode() + b"\n" * 5000,
         "20,000 commas": TABLE.encode() + b"," * 20_000,
         "columns in capitals": (HEAD.upper() + ROW).encode(),
+        "cell of 10 MB": (TABLE + f"5_2.png,5,2,{cell}\n").encode(),
+        "column of 10 MB": (f"{cell}," + TABLE.replace("\n5", "\n,5")).encode(),
         "a row twice": (TABLE + ROW).encode(),
     }
 
@@ -177,9 +178,9 @@ def places() -> list[HostileRow]:
         HostileRow("path from the root", {"photo": "/etc/passwd.jpg"}, outside),
         HostileRow("path upwards", {"photo": "../../x.jpg"}, outside),
         HostileRow("path upwards within", {"photo": "a/../../x.jpg"}, outside),
-        HostileRow("backslashes upwards", {"photo": "..\\x.jpg"}, outside),
-        HostileRow("share", {"photo": "\\\\host\\x.jpg"}, outside),
-        HostileRow("drive", {"photo": "c:x.jpg"}, outside),
+        HostileRow("backslashes upwards", {"photo": "..\\x.jpg"}),
+        HostileRow("share", {"photo": "\\\\host\\x.jpg"}),
+        HostileRow("drive", {"photo": "c:x.jpg"}),
         HostileRow("zero in a path", {"photo": "x\0.jpg"}, outside),
         HostileRow("address", {"photo": "http://127.0.0.1:9/x.jpg"}),
         HostileRow("block upwards", {"block": "../../x"}, nonsense),

@@ -33,6 +33,7 @@ ROW: Final[dict[str, Any]] = {
 }
 OUTSIDE: Final = "path outside the photo folder"
 NONSENSE: Final = "nonsense cell"
+FOREIGN: Final = "scheme not allowed"
 UNREADABLE: Final = "unreadable file"
 
 
@@ -131,6 +132,8 @@ def read_as_csv() -> list[Case]:
 def read_as_parquet() -> list[Case]:
     told = ("manifest.parquet", "delete it")
     row = "row 2"
+    wide = (row, "width")
+    twin = table().append_column("photo", pa.array(["x"]))
     kinds: dict[str, tuple[bytes, tuple[str, ...]]] = {
         "no bytes": (b"", told),
         "magic alone": (b"PAR1", told),
@@ -158,19 +161,19 @@ def read_as_parquet() -> list[Case]:
         "ring below zero": (encoded(table(ring=pa.array([-1]))), (row, "ring")),
         "width no number": (
             encoded(table(width_m=pa.array([float("nan")]))),
-            (row, "width"),
+            wide,
         ),
         "width endless": (
             encoded(table(width_m=pa.array([float("inf")]))),
-            (row, "width"),
+            wide,
         ),
         "width a record": (
             encoded(table(width_m=pa.array([{"a": 1}]))),
-            (row, "width"),
+            wide,
         ),
         "all null": (encoded(pa.table({n: pa.nulls(1) for n in ROW})), ("no rows",)),
         "twin columns": (
-            encoded(table().append_column("photo", pa.array(["x"]))),
+            encoded(twin),
             ("manifest",),
         ),
     }
@@ -207,14 +210,8 @@ def cut_off(city: Path) -> None:
 def rows() -> list[HostileRow]:
     """List hostile rows, which a hand adds to a manifest beside good ones."""
     one = HostileRow
-    paths = [
-        "/etc/passwd",
-        "../x.jpg",
-        "a/../../x.jpg",
-        "..\\x.jpg",
-        "c:x.jpg",
-        "x\0.jpg",
-    ]
+    paths = ["/etc/passwd", "../x.jpg", "a/../../x.jpg", "x\0.jpg"]
+    there = ["..\\x.jpg", "c:x.jpg"]  # names like others, of no file that is there
     cells = [
         *(("ring", cell) for cell in ("1e30", "100", "0.5", "-1", "one")),
         *(("rank", cell) for cell in ("nan", "10000", "0.5")),
@@ -222,16 +219,15 @@ def rows() -> list[HostileRow]:
         *(("depth_m", cell) for cell in ("inf", "401", "deep")),
         *(("width_assumed", "perhaps"), ("block", ""), ("lot", " ")),
     ]
-    roots = [
-        "http://127.0.0.1:9",
-        "ftp://127.0.0.1",
-        "foo://x",
-        "file:///nowhere",
-        "/nowhere",
-    ]
-    roots += ["mailto:x", "\0", "~", "x" * 5000]
+    schemes = ["http://127.0.0.1:9", "ftp://127.0.0.1", "foo://x", "HTTP://x"]
+    roots = ["file:///nowhere", "/nowhere", "mailto:x", "\0", "~", "x" * 5000]
     return [
         *(one(f"photo {path!r}", {"photo": path}, OUTSIDE) for path in paths),
+        *(one(f"photo {path!r}", {"photo": path}, UNREADABLE) for path in there),
+        *(
+            one(f"root {root!r}", {"root": root}, "scheme not allowed")
+            for root in schemes
+        ),
         *(one(f"{name} {cell[:9]}", {name: cell}, NONSENSE) for name, cell in cells),
         *(one(f"root {root[:20]!r}", {"root": root}, UNREADABLE) for root in roots),
         one("photo a folder", {"photo": "good"}, UNREADABLE),

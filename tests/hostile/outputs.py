@@ -132,7 +132,8 @@ def of_index() -> list[Case]:
 
 
 def of_explain() -> list[Case]:
-    up, sound = "../kept/file", {"code": 0, "writes": "out"}
+    up, out = "../kept/file", "out"
+    sound = {"code": 0, "writes": out}
     return [
         Case("explain: a file", explained(occupied("out")), 1, ("out",)),
         Case("explain: nowhere", explained(bool, PROC), 1, (PROC,)),

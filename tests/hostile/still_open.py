@@ -16,6 +16,26 @@ OF_REASON: Final[dict[str, tuple[str, ...]]] = {
         "name: no-break space at the start",
         "name: ideographic space at the start",
     ),
+    "a name like another system's path is refused where a disk allows it": (
+        "name: drive",
+        "name: backslash and dots",
+        "name: backslash at the start",
+        "catalogue row: backslashes upwards",
+        "catalogue row: share",
+        "catalogue row: drive",
+        "manifest row: photo '..\\\\x.jpg'",
+        "manifest row: photo 'c:x.jpg'",
+    ),
+    "a manifest may send this machine to hosts of its choice": (
+        "manifest row: root 'http://127.0.0.1:9'",
+        "manifest row: root 'ftp://127.0.0.1'",
+        "manifest row: root 'foo://x'",
+        "manifest row: root 'HTTP://x'",
+    ),
+    "one long cell refuses the whole list": (
+        "catalogue: cell of 10 MB",
+        "catalogue: column of 10 MB",
+    ),
     "reading has no bounds": (
         "catalogue: pipe",
         "catalogue: endless device",

@@ -32,7 +32,7 @@ from tests.hostile import artifacts, catalogues, images, pictures
 from tests.hostile.case import bounded, marks
 
 Bytes = st.SearchStrategy[bytes]
-FEW: Final = 30  # examples, which CI draws
+FEW: Final = 20  # examples, which CI draws
 EXAMPLES: Final = int(os.environ.get("NOSTALGIN_FUZZ", FEW))
 FUZZ_S: Final = 1800
 SHORT: Final = 40  # bytes that are written over others
