@@ -40,10 +40,6 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     from pipelines.site import Foreign, ViewerMissingError
 
     try:
-        build.reached(options)
-    except ConnectionError as problem:
-        raise fail(str(problem)) from problem
-    try:
         with hushed(errors):
             report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
     except (Unusable, Unlocked, build.Lost, Foreign, ViewerMissingError) as problem:

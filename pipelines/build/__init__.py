@@ -5,6 +5,6 @@ A stage of the core is a transform here; whom to tell, it is given. Open `city` 
 """
 
 from pipelines.build.build import Lost, Report, build
-from pipelines.build.options import options, reached
+from pipelines.build.options import options
 
-__all__ = ["Lost", "Report", "build", "options", "reached"]
+__all__ = ["Lost", "Report", "build", "options"]

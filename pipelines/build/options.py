@@ -1,14 +1,12 @@
 """What a build is told, as Beam options, so that any runner's launcher can tell it."""
 
 import argparse
-import socket
 from collections.abc import Sequence
 from typing import Any, Final
 
 from apache_beam.options.pipeline_options import (
     DirectOptions,
     PipelineOptions,
-    PortableOptions,
     StandardOptions,
 )
 from apache_beam.runners.runner import PipelineRunner, create_runner
@@ -16,7 +14,6 @@ from apache_beam.runners.runner import PipelineRunner, create_runner
 from pipelines.build.embedded import EMBEDDED
 
 OURS: Final = ("--city", "--models", "--shard")
-ANSWER_S: Final = 10.0
 DIGITS: Final = 9  # of a part's number
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
@@ -84,27 +81,6 @@ def known(runner: str, beam: Sequence[str]) -> None:
     strangers = parser.parse_known_args(list(beam))[1]
     if strangers:
         raise ValueError(f"{strangers[0]}: neither nostalgin nor Beam knows it")
-
-
-def reached(options: PipelineOptions) -> None:
-    """Insist on a job service that answers, where one is named.
-
-    Beam itself waits for it a minute, and then fails with its own words.
-
-    Raises:
-        ConnectionError: if nobody answers.
-    """
-    address = options.view_as(PortableOptions).job_endpoint or ""
-    host, _, port = address.rpartition(":")
-    if not (host and port.isdecimal()):  # "embed", or a name that gRPC resolves
-        return
-    try:
-        socket.create_connection((host.strip("[]"), int(port)), ANSWER_S).close()
-    except (OSError, OverflowError) as problem:
-        raise ConnectionError(
-            f"--job_endpoint {address}: {problem}; start the job service, or mend the "
-            "address"
-        ) from problem
 
 
 def part(shard: str) -> tuple[int, int]:

@@ -89,6 +89,7 @@ OF_REASON: Final[dict[str, tuple[str, ...]]] = {
         "network: relocked: labels of nothing",
     ),
     "the runner is asked only when the pipeline is made": (
+        "option: runner at a dead end",
         "option: runner without its extra",
     ),
     "bytes that are no UTF-8 are not refused": ("option: bytes for a credit",),
