@@ -123,9 +123,9 @@ def surrogates() -> list[Case]:
         Case("bytes for a block", indexed("--block", one), 1, (shown,)),
         Case("bytes for a credit", indexed("--credit", one), USAGE, ("--credit",)),
         Case("bytes for a title", indexed("--title", one), 0, **kept),
-        Case("bytes for networks", built("--models", one), 1, (shown,)),
+        Case("bytes for networks", built("--models", one), USAGE, (spelt,)),
         Case("bytes for a shard", built("--shard", one), USAGE, ("--shard",)),
-        Case("bytes for a runner", built("--runner", one), USAGE, ("runner",)),
+        Case("bytes for a runner", built("--runner", one), USAGE, ("ff:",)),
         Case("bytes for an output", output, 1, (spelt,)),
     ]
 

@@ -92,7 +92,10 @@ OF_REASON: Final[dict[str, tuple[str, ...]]] = {
         "option: runner at a dead end",
         "option: runner without its extra",
     ),
-    "bytes that are no UTF-8 are not refused": ("option: bytes for a credit",),
+    "bytes that are no UTF-8 are not refused": (
+        "option: bytes for a credit",
+        "option: bytes for networks",
+    ),
     "a loop of links raises as the city folder is resolved": (
         "output: index: a link to itself",
     ),
