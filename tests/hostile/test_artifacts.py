@@ -30,7 +30,7 @@ def found(store: Store, path: str) -> pa.Table | None:
 
 
 @pytest.mark.parametrize("damage", parameters("artifact", artifacts.cases()))
-def test_damage(damage: Damage, tmp_path: Path) -> None:
+def test_no_damage_is_read_as_if_nothing_were(damage: Damage, tmp_path: Path) -> None:
     store = artifacts.kept(tmp_path)
     damage.spoil(tmp_path / PATH)
     assert found(store, PATH) is None
@@ -67,7 +67,7 @@ HEALED = "a damaged city is built as it was"
 @pytest.mark.parametrize(
     "case", [pytest.param(HEALED, marks=marks("artifact", HEALED, BUILD_S))]
 )
-def test_healing(case: str, tmp_path: Path) -> None:
+def test_a_damaged_city_is_built_as_it_was(case: str, tmp_path: Path) -> None:
     """Damage one artifact of each stage, and of the site a model and a thumbnail."""
     city = tmp_path / case
     folders.filled("5_1.png", painted.photo(), tmp_path / "photos")

@@ -111,7 +111,7 @@ def encodings() -> list[bytes]:
 @timed
 @fuzzed
 @given(data=mutated(encodings))
-def test_photo_bytes(data: bytes) -> None:
+def test_any_bytes_are_a_photo_or_a_rejection(data: bytes) -> None:
     with bounded():
         found = photo.decode(data, name="x.jpg", max_megapixels=4.0)
     if isinstance(found, Rejection):
@@ -126,7 +126,9 @@ def test_photo_bytes(data: bytes) -> None:
 @given(
     data=st.one_of([st.just(magic) for magic in photo.photo._READERS]), more=st.binary()
 )
-def test_photo_bytes_after_a_magic(data: bytes, more: bytes) -> None:
+def test_any_bytes_after_a_magic_are_a_photo_or_a_rejection(
+    data: bytes, more: bytes
+) -> None:
     with bounded():
         assert isinstance(photo.decode(data + more, name="x"), Photo | Rejection)
 
@@ -145,7 +147,7 @@ CELLS: Final = st.text(max_size=20) | st.sampled_from(
 @timed
 @fuzzed
 @given(data=mutated(lists) | st.binary(max_size=300))
-def test_csv_bytes(data: bytes) -> None:
+def test_any_list_is_read_or_refused_in_words(data: bytes) -> None:
     try:
         names, rows = comma.parsed(data)
     except comma.NoTable as problem:
@@ -163,7 +165,7 @@ def test_csv_bytes(data: bytes) -> None:
 @timed
 @fuzzed
 @given(data=mutated(lists) | st.binary(max_size=300))
-def test_manifest_bytes(data: bytes) -> None:
+def test_any_mended_manifest_is_read_or_refused_in_words(data: bytes) -> None:
     with folder() as city:
         (city / manifest.CSV).write_bytes(data)
         try:
@@ -177,7 +179,7 @@ def test_manifest_bytes(data: bytes) -> None:
 @timed
 @fuzzed
 @given(cells=st.dictionaries(st.sampled_from(manifest.SCHEMA.names), CELLS))
-def test_manifest_rows(cells: dict[str, str]) -> None:
+def test_any_row_is_usable_or_told(cells: dict[str, str]) -> None:
     with contextlib.suppress(ValueError):
         assert isinstance(front_from(cells), Front | None)
     with folder() as city:
@@ -214,7 +216,7 @@ def locks() -> list[bytes]:
 @timed
 @fuzzed
 @given(data=mutated(locks) | JSON.map(lambda one: json.dumps(one).encode()))
-def test_lock_bytes(data: bytes) -> None:
+def test_any_lock_names_a_hash_or_is_refused_by_name(data: bytes) -> None:
     with folder() as models:
         (models / "models.lock").write_bytes(data)
         try:
@@ -226,7 +228,7 @@ def test_lock_bytes(data: bytes) -> None:
 @timed
 @fuzzed
 @given(data=mutated(locks) | JSON.map(lambda one: json.dumps(one).encode()))
-def test_record_bytes(data: bytes) -> None:
+def test_any_record_of_a_site_names_what_is_inside(data: bytes) -> None:
     with folder() as site:
         (site / ".nostalgin.json").write_bytes(data)
         (site / "index.html").touch()
@@ -253,7 +255,7 @@ def parquets() -> list[bytes]:
 @marked("artifact bytes")
 @fuzzed
 @given(data=mutated(parquets) | st.binary(max_size=300))
-def test_artifact_bytes(data: bytes) -> None:
+def test_any_artifact_is_read_or_told_to_be_damaged(data: bytes) -> None:
     with folder() as city, bounded():
         path = city / artifacts.PATH
         path.parent.mkdir(parents=True)
@@ -280,7 +282,7 @@ def tabulated() -> list[bytes]:
 @marked("manifest Parquet bytes")
 @fuzzed
 @given(data=mutated(tabulated))
-def test_manifest_parquet_bytes(data: bytes) -> None:
+def test_any_manifest_for_programs_is_read_or_refused_in_words(data: bytes) -> None:
     with folder() as city, bounded():
         (city / manifest.PARQUET).write_bytes(data)
         try:

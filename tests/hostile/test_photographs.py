@@ -24,7 +24,7 @@ built = partial(parameters, within_s=BUILD_S)
 
 
 @pytest.mark.parametrize("case", parameters("image", images.cases()))
-def test_an_image(case: HostileImage) -> None:
+def test_an_image_is_decoded_or_refused_with_the_reason(case: HostileImage) -> None:
     data = case.make()
     with bounded():
         result = photo.decode(data, name=case.name)
@@ -43,7 +43,9 @@ SENT = [one for one in images.cases() if one.reason or one.name in TAKEN]
 
 
 @pytest.mark.parametrize("case", built("built image", SENT))
-def test_an_image_in_a_city(case: HostileImage, told: Told) -> None:
+def test_a_city_tells_why_an_image_shows_nothing(
+    case: HostileImage, told: Told
+) -> None:
     (why, *more) = told.rejected[f"images/{case.name}"]
     if case.reason:
         assert why["reason"] == case.reason
@@ -53,7 +55,9 @@ def test_an_image_in_a_city(case: HostileImage, told: Told) -> None:
 
 
 @pytest.mark.parametrize("case", built("name", names.cases()))
-def test_a_name(case: HostileName, told: Told) -> None:
+def test_a_name_that_a_disk_takes_is_shown_or_told(
+    case: HostileName, told: Told
+) -> None:
     name = os.fsdecode(case.file)
     if not case.reason:
         assert name in told.shown
@@ -82,7 +86,9 @@ def test_nothing_is_written_but_the_city(told: Told) -> None:
 
 
 @pytest.mark.parametrize("case", built("manifest row", manifests.rows()))
-def test_a_row_of_a_manifest(case: manifests.HostileRow, told: Told) -> None:
+def test_a_row_of_a_manifest_is_built_or_told(
+    case: manifests.HostileRow, told: Told
+) -> None:
     number = told.numbers[case.called]
     photograph = case.cells.get("photo", "")
     own = [
@@ -101,7 +107,9 @@ def test_a_row_of_a_manifest(case: manifests.HostileRow, told: Told) -> None:
 
 
 @pytest.mark.parametrize("case", parameters("catalogue row", catalogues.rows()))
-def test_a_row_of_a_catalogue(case: catalogues.HostileRow, listed: Listed) -> None:
+def test_a_row_of_a_catalogue_is_a_front_or_told(
+    case: catalogues.HostileRow, listed: Listed
+) -> None:
     number = listed.numbers[case.called]
     own = listed.rejected.get(f"list.csv row {number}", [])
     if case.reason:
@@ -136,7 +144,7 @@ def test_a_formula_is_none_in_the_manifest(
 
 
 @pytest.mark.parametrize("case", parameters("photo", folders.unreadable()))
-def test_a_photo_that_is_no_file_of_bytes(
+def test_a_photo_that_is_no_file_of_bytes_is_refused(
     case: folders.Unreadable, tmp_path: Path
 ) -> None:
     case.put(tmp_path / "x.jpg")
