@@ -20,6 +20,7 @@ from pipelines.store import Store
 from tests.hostile.still_open import OPEN
 
 MOST_BYTES: Final = 1024**3  # that a command may take for what it reads
+LEFT: Final = {"city", "city/.lock"}  # of an output that nothing was written to
 MOST_LETTERS: Final = 1_000_000  # of what is told, however long the input's words
 HANG_S: Final = 20  # in which each answers; it is a guard, no measure
 BUILD_S: Final = 240  # in which a whole build does
@@ -58,7 +59,8 @@ def check(case: Case, folder: Path) -> None:
     for said in case.says:
         assert bare(said) in bare(told), told
     changed = {name for name, _ in before.items() ^ tree(folder).items()}
-    outside = {name for name in changed if not below(name, case.writes)}
+    left = LEFT - before.keys()
+    outside = {name for name in changed - left if not below(name, case.writes)}
     assert not outside
     if case.keeps:
         assert set(case.keeps) <= shown(folder / str(case.writes))
