@@ -94,7 +94,8 @@ def walked(folder: bytes) -> Iterator[Path]:
     while waiting:
         with contextlib.suppress(OSError), os.scandir(waiting.pop()) as entries:
             for entry in entries:
-                yield Path(os.fsdecode(entry.path))
+                if os.path.lexists(entry.path):
+                    yield Path(os.fsdecode(entry.path))
                 if entry.is_dir(follow_symlinks=False):
                     waiting.append(entry.path)
 

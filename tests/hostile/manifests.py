@@ -211,7 +211,10 @@ def rows() -> list[HostileRow]:
     """List hostile rows, which a hand adds to a manifest beside good ones."""
     one = HostileRow
     paths = ["/etc/passwd", "../x.jpg", "a/../../x.jpg", "x\0.jpg"]
-    there = ["..\\x.jpg", "c:x.jpg"]  # names like others, of no file that is there
+    there = [
+        "..\\nowhere.jpg",
+        "c:nowhere.jpg",
+    ]  # no files there
     cells = [
         *(("ring", cell) for cell in ("1e30", "100", "0.5", "-1", "one")),
         *(("rank", cell) for cell in ("nan", "10000", "0.5")),

@@ -121,7 +121,7 @@ def surrogates() -> list[Case]:
         Case("bytes for a photo", alone("explain", one, "-o", "out"), 1, (shown,)),
         Case("bytes for a list", indexed("--catalogue", one), 1, (shown,)),
         Case("bytes for a block", indexed("--block", one), 1, (shown,)),
-        Case("bytes for a credit", indexed("--credit", one), USAGE, ("--credit",)),
+        Case("bytes for a credit", indexed("--credit", one), 1, (spelt,)),
         Case("bytes for a title", indexed("--title", one), 0, **kept),
         Case("bytes for networks", built("--models", one), USAGE, (spelt,)),
         Case("bytes for a shard", built("--shard", one), USAGE, ("--shard",)),

@@ -23,8 +23,8 @@ OF_REASON: Final[dict[str, tuple[str, ...]]] = {
         "catalogue row: backslashes upwards",
         "catalogue row: share",
         "catalogue row: drive",
-        "manifest row: photo '..\\\\x.jpg'",
-        "manifest row: photo 'c:x.jpg'",
+        "manifest row: photo '..\\\\nowhere.jpg'",
+        "manifest row: photo 'c:nowhere.jpg'",
     ),
     "a manifest may send this machine to hosts of its choice": (
         "manifest row: root 'http://127.0.0.1:9'",
