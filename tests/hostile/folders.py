@@ -192,8 +192,9 @@ def pipe(path: Path) -> None:
 
 def released(path: Path) -> None:
     with contextlib.suppress(OSError):
-        os.close(os.open(path, os.O_WRONLY | os.O_NONBLOCK))  # fails if nobody waits
-        path.with_name(WAITED).touch()
+        other_end = os.open(path, os.O_WRONLY | os.O_NONBLOCK)  # fails if nobody waits
+        path.with_name(WAITED).touch()  # before the other wakes
+        os.close(other_end)
 
 
 @dataclass(frozen=True)
