@@ -1,6 +1,8 @@
 # make demo   everything a newcomer needs: environment, painted streets, pipeline, site
 # make test   everything: Python, training and viewer parts, style checks apart
 # make check  ruff, pyright, import-linter
+# make fuzz   thousands of damaged bytes for every reader; some minutes
+# make audit  known holes in what this is built on; it asks a service elsewhere
 # make bench  benchmarks, as ratios against named baselines
 
 PYTHON ?= python3
@@ -12,8 +14,9 @@ INSTALL := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(UV) pip install --quiet --override de
 VIEWER := pipelines/site/viewer_dist/index.html
 VIEWER_SOURCES := $(shell find viewer -type f -not -path '*/node_modules/*' -not -path '*/dist/*' 2>/dev/null)
 CITY ?= demo-city
+EXAMPLES ?= 2000
 
-.PHONY: demo test check bench viewer clean
+.PHONY: demo test check fuzz audit bench viewer clean
 
 demo: $(VENV)/.run $(VIEWER)
 	$(BIN)/nostalgin demo -o $(CITY)
@@ -27,6 +30,12 @@ check: $(VENV)/.test
 	$(BIN)/ruff check .
 	$(BIN)/pyright
 	$(BIN)/lint-imports
+
+fuzz: $(VENV)/.test
+	NOSTALGIN_FUZZ=$(EXAMPLES) $(BIN)/pytest tests/hostile/test_fuzz.py -n 2
+
+audit: $(VENV)/.test
+	$(BIN)/python deploy/audit.py
 
 bench: $(VENV)/.test
 	for f in tests/bench/bench_*.py; do $(BIN)/python $$f || exit 1; done

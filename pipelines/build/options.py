@@ -11,7 +11,7 @@ from apache_beam.options.pipeline_options import (
     PipelineOptions,
     StandardOptions,
 )
-from apache_beam.runners.runner import create_runner
+from apache_beam.runners.runner import PipelineRunner, create_runner
 
 from pipelines.build import cluster
 from pipelines.build.embedded import EMBEDDED
@@ -20,6 +20,7 @@ from pipelines.store import textual
 
 SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")  # RFC 3986, section 3.1
 OURS: Final = ("--city", "--models", "--shard", "--allow_schemes")
+DIGITS: Final = 9  # of a part's number
 # What people call it; Beam itself would fetch another runner for these names.
 ALIASES: Final = ("DirectRunner", "BundleBasedDirectRunner", "", None)
 
@@ -104,9 +105,11 @@ def known(runner: str, beam: Sequence[str]) -> None:
         ValueError: if there is no such runner or option, or a package lacks.
     """
     try:
-        create_runner(runner)
-    except (ImportError, AttributeError) as problem:
+        made = create_runner(runner)
+    except (ImportError, AttributeError, TypeError, ValueError) as problem:
         raise ValueError(f"--runner {runner}: {problem}") from problem
+    if not isinstance(made, PipelineRunner):  # Beam takes the path of any function
+        raise ValueError(f"--runner {runner}: it is no runner")  # noqa: TRY004
     cluster.equipped(runner)
     if runner != EMBEDDED:
         return
@@ -135,6 +138,7 @@ def scheme(written: str) -> str:
 def part(shard: str) -> tuple[int, int]:
     """Read "3/16" as the third of sixteen parts; an empty text is all in one part."""
     k, _, n = (shard or "1/1").partition("/")
-    if not (k.isdecimal() and n.isdecimal() and 1 <= int(k) <= int(n)):
+    counts = k.isdecimal() and n.isdecimal() and max(len(k), len(n)) <= DIGITS
+    if not (counts and 1 <= int(k) <= int(n)):
         raise ValueError(f"--shard {shard}: write it as 3/16, the third of 16 parts")
     return int(k), int(n)

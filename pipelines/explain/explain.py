@@ -5,6 +5,7 @@ The file's name is never looked at: the picture must speak. What is written foll
 """
 
 import json
+import os
 import resource
 import sys
 import time
@@ -68,7 +69,7 @@ def explain(
     report["seconds"] = {stage: round(spent, 4) for stage, spent in seconds.items()}
     report["peak_rss_bytes"] = peak_rss_bytes()
     text = json.dumps(report, indent=1) + "\n"
-    (out / "explain.json").write_text(text, encoding="utf-8")
+    put(out / "explain.json", text.encode())
     return report
 
 
@@ -201,8 +202,24 @@ def saved(out: Path, name: str, image: np.ndarray) -> str:
         OSError: if it can't be written there; OpenCV would not tell.
     """
     _, code = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 3])
-    (out / f"{name}.png").write_bytes(code.tobytes())
+    put(out / f"{name}.png", code.tobytes())
     return f"{name}.png"
+
+
+def put(path: Path, data: bytes) -> None:
+    """Write a file in one move; a link in its place is replaced, and never followed.
+
+    Raises:
+        OSError: if it can't be written there.
+    """
+    beside = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    beside.unlink(missing_ok=True)
+    try:
+        with beside.open("xb") as file:
+            file.write(data)
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
 
 
 def pictures(made: Stages, out: Path) -> None:

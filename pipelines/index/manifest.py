@@ -107,7 +107,7 @@ def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
     csv, parquet = optional(store, CSV), optional(store, PARQUET)
     told: dict[bytes, bytes] = {}
     if parquet is not None:
-        with contextlib.suppress(pa.ArrowInvalid, OSError):  # what it told is lost
+        with contextlib.suppress(pa.ArrowException, OSError):  # what it told is lost
             told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
     if csv is None:
         return (PARQUET, parquet) if parquet is not None and MENDED in told else None

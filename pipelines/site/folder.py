@@ -48,7 +48,8 @@ def recorded(root: Path) -> tuple[frozenset[str], frozenset[str]]:
     Raises:
         Foreign: if there is no such record.
     """
-    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+    nested_deep = RecursionError
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError, nested_deep):
         told = json.loads((root / RECORD).read_bytes())
         now, before = told["now"], told["before"]
         if all(map(inside, [*now, *before])):
