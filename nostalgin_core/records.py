@@ -169,6 +169,7 @@ class Seen:
     left_px: float  # centre of the quad along x, for the order from left to right
     area_px: float  # visible pixels
     photographed: float  # share of the elevation that a camera saw
+    storeys: tuple[float, ...] = ()  # a score for each of `storeys.COUNTS`
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +196,18 @@ class Wall:
     evidence: int | None  # COPIED or ASSUMED, all of it; None: the texture's own
 
 
+@dataclass(frozen=True, slots=True)
+class Height:
+    """A building's height and how it is known."""
+
+    height_m: float
+    low_m: float  # of the interval that holds it in nine of ten cases
+    high_m: float
+    by_storeys_m: float | None  # as its best elevation's rows of windows have it
+    by_width_m: float | None  # as its width and that elevation's proportions have it
+    supported: bool  # believed to lie within a quarter of the truth
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Building:
     """A cuboid on one lot."""
@@ -204,6 +217,7 @@ class Building:
     height_m: float
     walls: tuple[Wall, ...]  # one per footprint edge, in that order
     assumed: bool  # no photograph gave it its height
+    height: Height | None = None  # how it is known; None where it is assumed
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from nostalgin_core import (
     quantise,
     rectify,
     segment,
+    storeys,
 )
 from nostalgin_core.records import (
     Elevation,
@@ -131,4 +132,5 @@ def seen(key: str, facade: Facade, view: Elevation) -> Seen:
         left_px=float(view.quad[:, 0].mean()),
         area_px=float(facade.alpha.sum(dtype=np.float64)),
         photographed=photographed / max(somewhere, 1),
+        storeys=tuple(storeys.scores(view.image, np.isin(view.evidence, by_camera))),
     )

@@ -5,17 +5,20 @@ street that cuts it, and blocks face each other over the street between them. So
 rule lays out both: two sides on the same street are turned to face, its width apart.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from nostalgin_core.address import house_numbers, street_width
 from nostalgin_core.arrays import Points
+from nostalgin_core.block import heights
 from nostalgin_core.block.chain import Footprint, Ring, chain
-from nostalgin_core.block.cuboid import ASSUMED_M, Shown, cuboid
+from nostalgin_core.block.cuboid import ASSUMED_M, cuboid, told
+from nostalgin_core.block.heights import Shown
 from nostalgin_core.block.outline import nominal_headings
 from nostalgin_core.records import Assignment, Block, Building, Front, Texture
 
@@ -23,7 +26,7 @@ FALLBACK_GAP_M = 24.0
 NEIGHBOURS = 4
 WIDTH_SD, HEIGHT_SD = 0.4, 0.6  # of the logarithms: heights vary more than widths
 
-Aspects = Mapping[Texture, tuple[float, float]]  # aspect and its spread
+Aspects = Mapping[Texture, Mapping[str, Any]]  # aspect, its spread, and storeys
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,6 +54,7 @@ def block(
     if not fronts:
         raise ValueError(f"block {name!r} has no fronts")
     shown = elevations(assignments, aspects)
+    guessed = {front.front_id for front in fronts if front.width_assumed}
     fronts = with_seen_widths(fronts, shown)
     numbers = sorted({front.ring for front in fronts})
     rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
@@ -58,7 +62,7 @@ def block(
     footprints = _distinct([one for ring in placed for one in ring.footprints])
     return Block(
         block=name,
-        buildings=tuple(raised(footprints, shown, copied=copied)),
+        buildings=tuple(raised(footprints, shown, guessed, copied=copied)),
         outline_m=tuple(ring.outline_m for ring in placed),
     )
 
@@ -85,7 +89,7 @@ def elevations(
     for one in assignments:
         texture = (one.photo, one.facade)
         shown.setdefault(one.front_id, []).append(
-            Shown(texture, *aspects[texture], score=one.score)
+            Shown(texture, score=one.score, **aspects[texture])
         )
     return shown
 
@@ -128,28 +132,26 @@ def with_seen_widths(
 def raised(
     footprints: Sequence[Footprint],
     shown: Mapping[str, Sequence[Shown]],
+    guessed: Collection[str] = (),
     *,
     copied: bool = False,
 ) -> list[Building]:
     """Raise all buildings; those without a height get their neighbours' median."""
-    first = [cuboid(footprint, shown, copied=copied) for footprint in footprints]
-    seen = [
-        (i, building.height_m)
-        for i, building in enumerate(first)
-        if not building.assumed
-    ]
+    known = [heights.height(told(one, shown, guessed)) for one in footprints]
+    seen = [(i, one.height_m) for i, one in enumerate(known) if one is not None]
 
     def neighbourly(index: int) -> float:
-        count = len(first)
+        count = len(known)
         near = sorted(
             seen,
             key=lambda one: min((one[0] - index) % count, (index - one[0]) % count),
         )
-        return float(median(height_m for _, height_m in near[:NEIGHBOURS]))
+        found = [height_m for _, height_m in near[:NEIGHBOURS]]
+        return float(median(found)) if found else ASSUMED_M
 
     return [
-        replace(one, height_m=neighbourly(index)) if one.assumed and seen else one
-        for index, one in enumerate(first)
+        cuboid(footprint, shown, one, assumed_m=neighbourly(index), copied=copied)
+        for index, (footprint, one) in enumerate(zip(footprints, known, strict=True))
     ]
 
 

@@ -71,5 +71,12 @@ def raised(
     seen: Sequence[Seen],
 ) -> Block:
     """Raise a block's buildings from the proportions of the facades they wear."""
-    aspects = {(one.photo, one.facade): (one.aspect, one.aspect_sd) for one in seen}
+    aspects = {
+        (one.photo, one.facade): {
+            "aspect": one.aspect,
+            "aspect_sd": one.aspect_sd,
+            "storeys": one.storeys,
+        }
+        for one in seen
+    }
     return block.block(name, fronts, assignments, aspects)

@@ -9,7 +9,7 @@ import apache_beam as beam
 from apache_beam import pvalue
 
 from nostalgin_core import model
-from nostalgin_core.records import Rejection
+from nostalgin_core.records import Height, Rejection
 from pipelines import site
 from pipelines.build.blocks import Modelled, Placed, texture_of
 from pipelines.build.stages import FacadeRef
@@ -60,6 +60,7 @@ class BuildingRows:
                 "lot": own[0].lot if own else "",
                 "address": model.address(own),
                 "height_m": building.height_m,
+                **known(building.height),
                 "footprint_m": building.footprint_m.ravel().tolist(),
                 "assumed": building.assumed,
                 "fronts": [front.front_id for front in own],
@@ -73,6 +74,19 @@ class BuildingRows:
     def _path(self, ref: FacadeRef) -> str:
         key = self.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
         return self.versions.path("inpaint", key)
+
+
+def known(height: Height | None) -> dict[str, Any]:
+    """Tell how a height is known, if it is."""
+    if height is None:
+        return {"height_supported": False}
+    return {
+        "height_low_m": height.low_m,
+        "height_high_m": height.high_m,
+        "height_by_storeys_m": height.by_storeys_m,
+        "height_by_width_m": height.by_width_m,
+        "height_supported": height.supported,
+    }
 
 
 def block_rows(done: Modelled) -> Rows:

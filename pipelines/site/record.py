@@ -36,7 +36,8 @@ def record(
     `photos` maps the key of each photo to what is told of it (`credit`, `caption`);
     `rejections` and `more` (a year, say) map building ids. Lengths are metres, rounded
     to centimetres; `photographed_share` is the share of a building's fronts, by width,
-    that a camera saw; `height_sd_m` follows from the spread of the aspect it wears.
+    that a camera saw; `height_low_m` to `height_high_m` hold the height in nine of ten
+    cases, and `height_assumed` says that nothing supports it.
     """
     by_id = {front.front_id: front for front in fronts}
     facades = {(one.photo, one.facade): one for one in seen}
@@ -89,7 +90,7 @@ def _building(
         ),
         "width_assumed": bool(own and own[0].width_assumed),
         "height_m": round(building.height_m, CENTIMETRE),
-        "height_sd_m": _height_sd(building, facades),
+        **_height(building),
         "assumed": building.assumed,
         "photographed_share": round(_share(building, facades), 3),
     }
@@ -103,14 +104,19 @@ def _width(wall: Wall) -> float:
     return float(np.hypot(*np.subtract(wall.end_m, wall.start_m)))
 
 
-def _height_sd(building: Building, facades: Mapping[Texture, Seen]) -> float | None:
-    """Carry the aspect's relative spread over to the height; the surest one counts."""
-    textures = [wall.texture for wall in building.walls if wall.texture is not None]
-    worn = [facades[texture] for texture in textures if texture in facades]
-    if building.assumed or not worn:
-        return None
-    relative = min(one.aspect_sd / one.aspect for one in worn)
-    return round(building.height_m * relative, CENTIMETRE)
+def _height(building: Building) -> Json:
+    """Tell how the height is known: its interval, and what each witness says of it."""
+    known = building.height
+    if known is None:
+        return {"height_assumed": True}
+    told = {
+        "height_low_m": known.low_m,
+        "height_high_m": known.high_m,
+        "height_by_storeys_m": known.by_storeys_m,
+        "height_by_width_m": known.by_width_m,
+    }
+    rounded = {n: round(v, CENTIMETRE) for n, v in told.items() if v is not None}
+    return {**rounded, "height_assumed": not known.supported}
 
 
 def _share(building: Building, facades: Mapping[Texture, Seen]) -> float:

@@ -19,7 +19,16 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final, Self
 
-from nostalgin_core import block, inpaint, matte, model, photo, rectify, segment
+from nostalgin_core import (
+    block,
+    inpaint,
+    matte,
+    model,
+    photo,
+    rectify,
+    segment,
+    storeys,
+)
 from pipelines.models import NETWORKS, Models
 from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
@@ -27,15 +36,15 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 5,
     "matte": 7,
-    "rectify": 4,
+    "rectify": 5,
     "inpaint": 5,
-    "block": 2,
+    "block": 3,
     "thumbnail": 1,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
     "segment": (photo, segment),
     "matte": (matte,),
-    "rectify": (rectify,),
+    "rectify": (rectify, storeys),
     "inpaint": (inpaint,),
     "block": (block, model),
     "thumbnail": (photo,),

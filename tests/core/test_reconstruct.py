@@ -50,7 +50,9 @@ def test_a_wall_has_the_proportions_of_the_facade_it_wears(
     ((_, facade),) = rebuilt.settled.worn()
     aspect = next(one.aspect for one in made.elevations if one.facade == facade)
     building = rebuilt.settled.block.buildings[0]
-    assert building.height_m == pytest.approx(10.0 / aspect)
+    assert building.height is not None
+    assert building.height.by_width_m == pytest.approx(10.0 / aspect)
+    assert building.height_m == pytest.approx(10.0 / aspect, rel=0.15)
 
 
 def test_the_model_is_a_glb_that_names_its_buildings(

@@ -96,8 +96,9 @@ function facts(record, here) {
     ['Street', record.street],
     ['Year', record.year],
     ['Width', metres(record.width_m, record.width_sd_m)],
-    ['Height', record.assumed && record.height_m
-      ? `${metres(record.height_m)}, assumed` : metres(record.height_m, record.height_sd_m)],
+    ['Height', height(record)],
+    ['By its storeys', record.height_by_storeys_m && metres(record.height_by_storeys_m)],
+    ['By its width', record.height_by_width_m && metres(record.height_by_width_m)],
   ];
   const list = make('dl');
   for (const [term, value] of rows) {
@@ -107,6 +108,15 @@ function facts(record, here) {
     list.append(make('dt', { textContent: term }), definition);
   }
   return list;
+}
+
+/** A height is stated as surely as it is known. */
+export function height(record) {
+  const { height_m: known, height_low_m: low, height_high_m: high } = record;
+  if (!Number.isFinite(known)) return null;
+  if (!Number.isFinite(low) || !Number.isFinite(high)) return `${metres(known)}, assumed`;
+  const between = `${low.toFixed(0)} to ${high.toFixed(0)} m in nine of ten cases`;
+  return `${metres(known)}, ${between}${record.height_assumed ? '; nothing supports it' : ''}`;
 }
 
 function share(record) {

@@ -9,7 +9,15 @@ from PIL import Image
 
 from nostalgin_core import evidence
 from nostalgin_core.model import atlas, picture
-from nostalgin_core.records import Assignment, Block, Building, Front, Seen, Wall
+from nostalgin_core.records import (
+    Assignment,
+    Block,
+    Building,
+    Front,
+    Height,
+    Seen,
+    Wall,
+)
 from pipelines.site import site
 from pipelines.site.folder import RECORD, Folder, Foreign
 from pipelines.site.record import record as recorded
@@ -185,9 +193,9 @@ def corner() -> Block:
         )
         for i in range(4)
     )
-    return Block(
-        "993", (Building("993-11", square, 20.0, walls, assumed=False),), (square,)
-    )
+    height = Height(20.0, 17.0, 24.5, 18.0, None, supported=True)
+    built = Building("993-11", square, 20.0, walls, assumed=False, height=height)
+    return Block("993", (built,), (square,))
 
 
 def told(**more: Any) -> dict[str, Any]:
@@ -221,8 +229,11 @@ def test_a_front_that_no_photograph_shows_counts_as_unseen() -> None:
     assert told()["photographed_share"] == pytest.approx(0.8 * 10 / 40)
 
 
-def test_height_is_as_sure_as_the_aspect_it_comes_from() -> None:
-    assert told()["height_sd_m"] == pytest.approx(20.0 * 0.01 / 0.5)
+def test_a_height_is_told_with_its_witnesses() -> None:
+    one = told()
+    assert (one["height_low_m"], one["height_high_m"]) == (17.0, 24.5)
+    assert (one["height_by_storeys_m"], "height_by_width_m" in one) == (18.0, False)
+    assert one["height_assumed"] is False
 
 
 def test_the_photograph_that_is_worn_comes_first() -> None:
