@@ -32,7 +32,7 @@ def read(path: str | Path, most: int) -> bytes:
         if not stat.S_ISREG(found.st_mode):
             raise OSError(errno.EINVAL, "Not a regular file", str(path))
         fits(found.st_size, most, str(path))
-        # a file may grow, or tell no size as in /proc; and room is made for what is asked
+        # a file may grow, or tell no size; and room is made for all that is asked
         data = file.read(min(most, max(found.st_size, SLACK)) + 1)
         while len(data) <= most and (more := file.read(SLACK)):
             data += more

@@ -203,6 +203,9 @@ def parsed(data: bytes, where: str) -> pa.Table:
         bounded.fits(
             sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
         )
+        names = file.schema_arrow.names
+        if len(set(names)) < len(names):
+            raise pa.ArrowInvalid("two columns have one name")
         if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
             raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
         table = decoded(file)
