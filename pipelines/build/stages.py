@@ -52,8 +52,8 @@ def read(ref: PhotoRef) -> PhotoRef | Rejection:
     """Hash a photo's bytes."""
     try:
         data = Store(ref.root).read_bytes(ref.name)
-    except OSError as problem:
-        why = problem.strerror or str(problem)
+    except (OSError, ValueError) as problem:  # the latter of a name that none can have
+        why = getattr(problem, "strerror", None) or str(problem)
         remedy = f"{ref.root}/{ref.name}: {why}; restore the file or mend the row"
         return Rejection(ref.name, "photo", "unreadable file", remedy)
     return replace(ref, sha256=hashlib.sha256(data).hexdigest())

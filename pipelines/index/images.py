@@ -29,7 +29,11 @@ def images(folder: Path, city: str) -> tuple[list[str], list[Rejection]]:
         Nothing: if there is no such folder, or no image in it, or if it is one that
             `build` writes to.
     """
-    if not folder.is_dir():
+    try:
+        there = folder.is_dir()
+    except OSError as problem:
+        raise Nothing(f"{folder}: {why(problem)}; name the photos' folder") from problem
+    if not there:
         raise Nothing(f"{folder} is no folder: name the folder that holds the photos")
     if not textual(os.path.abspath(folder)):  # noqa: PTH100 - a link stays a link
         raise Nothing(f"{spelt_out(folder)}: a folder's name is not UTF-8; rename it")

@@ -1,8 +1,9 @@
 """Parquet whose damage shows: nothing is read that is not what was written.
 
 Every page of data carries the format's own CRC-32, and the footer, which tells where
-the pages lie, a SHA-256 of itself (with zeros in the place of the sum). So a column
-is read, and vouched for, without reading the others.
+the pages lie, a SHA-256 of itself (with zeros in the place of the sum), of the file's
+size and of its name in the store. So a column is read, and vouched for, without reading
+the others, and no file passes for another.
 """
 
 import hashlib
@@ -33,8 +34,8 @@ class Damaged(ValueError):  # noqa: N818 - it reads as what it is about
         return f"{self.name} is damaged: {self.why}"
 
 
-def sealed(table: pa.Table) -> bytes:
-    """Encode a table; the same rows give the same bytes."""
+def sealed(table: pa.Table, name: str = "") -> bytes:
+    """Encode a table; the same rows and name give the same bytes."""
     marked = {**(table.schema.metadata or {}), SEAL: ZEROS}
     sink = io.BytesIO()
     pq.write_table(
@@ -48,10 +49,10 @@ def sealed(table: pa.Table) -> bytes:
     data = sink.getvalue()
     footer = data[-TAIL - length(data[-TAIL:]) :]
     at = len(data) - len(footer) + place(footer)
-    return data[:at] + digest(footer) + data[at + len(ZEROS) :]
+    return data[:at] + digest(footer, len(data), name) + data[at + len(ZEROS) :]
 
 
-def opened(file: pa.NativeFile) -> pq.ParquetFile:
+def opened(file: pa.NativeFile, name: str = "") -> pq.ParquetFile:
     """Open a file whose footer is what was written; its pages are checked as read.
 
     Raises:
@@ -68,7 +69,7 @@ def opened(file: pa.NativeFile) -> pq.ParquetFile:
     footer = file.read_at(whole, size - whole)
     at = place(footer)
     blank = footer[:at] + ZEROS + footer[at + len(ZEROS) :]
-    if digest(blank) != footer[at : at + len(ZEROS)]:
+    if digest(blank, size, name) != footer[at : at + len(ZEROS)]:
         raise Damaged("the footer is not what was written")
     return pq.ParquetFile(file, page_checksum_verification=True)
 
@@ -112,6 +113,7 @@ def place(footer: bytes) -> int:
     return at
 
 
-def digest(footer: bytes) -> bytes:
-    """Sum up a footer whose own sum is zeros."""
-    return hashlib.sha256(footer).hexdigest().encode()
+def digest(footer: bytes, size: int, name: str) -> bytes:
+    """Sum up a footer whose own sum is zeros, with what it is the footer of."""
+    whole = footer + f"\0{size}\0{name}".encode()
+    return hashlib.sha256(whole).hexdigest().encode()

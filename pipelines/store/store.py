@@ -142,7 +142,7 @@ class Store:
 
     def write_table(self, name: str, table: pa.Table) -> None:
         """Write a table as sealed Parquet, wholly or not at all."""
-        self.write_bytes(name, seal.sealed(table))
+        self.write_bytes(name, seal.sealed(table, name))
 
     def read_table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
         """Read a table that `write_table` wrote, or some of its columns.
@@ -173,7 +173,7 @@ class Store:
         system, root = self._open()
         with system.open_input_file(f"{root}/{name}") as file:
             try:
-                return told(seal.opened(file))
+                return told(seal.opened(file, name))
             except Damaged as problem:
                 raise Damaged(problem.why, name) from problem
 
