@@ -14,15 +14,15 @@ from dataclasses import dataclass
 from typing import Final
 
 from nostalgin_core.catalogue.directions import Law, SideFacts
-from nostalgin_core.catalogue.runs import Run, run
+from nostalgin_core.catalogue.runs import Run, runs
 from nostalgin_core.catalogue.sides import usual
 from nostalgin_core.catalogue.spots import Spot, folded
 
 AGREEING: Final = 2 / 3  # of a side's numbers, to stand by lot
-TRUSTED: Final = 0.75  # of a block's
+ASTRAY: Final = 0.25  # of a block's numbers may run against its lots
+FEW: Final = 2  # or so many: a slip, and what was odd before
 MIXED: Final = 0.25  # of a side's numbers: then both parities stand on it
-FAR: Final = 40.0  # numbers: two blocks of an avenue
-FARTHER: Final = 3.0  # times as far as all the rest reach
+FAR: Final = 50.0  # numbers: half a front of 800 feet
 
 Doubts = list[tuple[Spot, str]]
 
@@ -33,85 +33,119 @@ class Along:
 
     spots: list[Spot]  # by lot
     steady: list[int]  # places of lots whose numbers can be ordered
-    run: Run  # of these
+    far: list[int]  # of lots whose numbers are far from all of these
+    up: Run  # of the steady ones
+    down: Run
     parity: int | None  # None: both stand here, or no number is known
+
+    @property
+    def direction(self) -> int:
+        """How the numbers run with the lots: 1 rising, -1 falling, 0 untold."""
+        return (self.up.length > self.down.length) - (self.up.length < self.down.length)
+
+    def run(self, rising: int) -> Run:
+        """Give the longer run; of two as long, the one that the law says."""
+        return self.up if (self.direction or rising) > 0 else self.down
 
     @property
     def agreeing(self) -> bool:
         """Tell whether lots and numbers run together on most of the side."""
-        return self.run.length >= AGREEING * len(self.steady)
+        return max(self.up.length, self.down.length) >= AGREEING * len(self.steady)
+
+    @property
+    def sign(self) -> int:
+        """1 where odd numbers stand, -1 where even ones do."""
+        return -1 if self.parity == 0 else 1
+
+    def rising(self, law: Law) -> int:
+        """Tell how numbers run anticlockwise by the law of the street."""
+        return law.get(folded(self.spots[0].street), 1) * self.sign
 
     def facts(self) -> SideFacts | None:
         """Tell the street, its parity (1 odd, -1 even), and how its numbers run."""
         if not any(one.numbers for one in self.spots):
             return None
-        sign = 1 if self.parity in (1, None) else -1
-        length = self.run.length
-        votes = self.run.direction * max(length * (length - 1) / 2, 1.0)
-        return folded(self.spots[0].street), sign, votes
+        length = max(self.up.length, self.down.length)
+        votes = self.direction * length * (length - 1) / 2
+        return folded(self.spots[0].street), self.sign, votes
 
 
 def along(spots: Sequence[Spot]) -> Along:
     """Find the numbers of a side that can be ordered, and how they run."""
     parity = usual(spots)
     numbered = [i for i, one in enumerate(spots) if one.numbers is not None]
-    odd_ones = [i for i in numbered if spots[i].parity != parity]
+    odd_ones = {i for i in numbered if spots[i].parity != parity}
     if len(odd_ones) > 1 and len(odd_ones) > MIXED * len(numbered):
-        parity, odd_ones = None, []
-    steady = [i for i in numbered if i not in set(odd_ones) and not spots[i].split]
-    steady = steady or [i for i in numbered if i not in set(odd_ones)]
-    ranges = [spots[i].numbers or (0.0, 0.0) for i in steady]
-    return Along(list(spots), steady, run(ranges), parity)
+        parity, odd_ones = None, set()
+    fitting = [i for i in numbered if i not in odd_ones]
+    far = _far(spots, fitting)
+    fitting = [i for i in fitting if i not in far]
+    steady = [i for i in fitting if not spots[i].split] or fitting
+    up, down = runs([spots[i].numbers or (0.0, 0.0) for i in steady])
+    return Along(list(spots), steady, far, up, down, parity)
+
+
+def _far(spots: Sequence[Spot], places: Sequence[int]) -> list[int]:
+    """Find the lots whose numbers are far from all others of a side of three or more."""
+    some = sorted((spots[i].numbers or (0.0, 0.0), i) for i in places)
+    if len(some) < 3:
+        return []
+    found = []
+    for at, ((low, high), i) in enumerate(some):
+        below = low - some[at - 1][0][1] if at else FAR + 1
+        above = some[at + 1][0][0] - high if at + 1 < len(some) else FAR + 1
+        if min(below, above) > FAR:
+            found.append(i)
+    return found if 2 * len(found) < len(some) else []
 
 
 def trusted(sides: Sequence[Along]) -> bool:
     """Tell whether lots and numbers agree on most of a block, so that lots can order."""
-    long = [side for side in sides if len(side.steady) > 2]
-    count = sum(len(side.steady) for side in long)
-    return sum(side.run.length for side in long) >= TRUSTED * count
+    count = sum(len(side.steady) for side in sides)
+    astray = sum(
+        len(side.steady) - max(side.up.length, side.down.length) for side in sides
+    )
+    named = [one.lot[:1].isdecimal() for side in sides for one in side.spots]
+    few = FEW if all(named) else 0  # lots without a number stand as they are listed
+    return astray <= max(few, ASTRAY * count)
 
 
 def ordered(side: Along, law: Law, *, by_lot: bool, first: bool) -> list[Spot]:
     """Order a side anticlockwise; `first` tells that a block's lots begin on it."""
     if not side.steady:
         return side.spots
-    sign = 1 if side.parity in (1, None) else -1
-    rising = law.get(folded(side.spots[0].street), 1) * sign
-    if not by_lot or (not side.agreeing and first):
+    rising = side.rising(law)
+    unsure = first and not side.agreeing
+    if not by_lot or unsure or (len(side.steady) > 1 and not side.run(rising).length > 1):
         return _by_number(side.spots, rising)
-    against = first and side.run.direction not in (0, rising)
-    if len(side.steady) == 2 and not side.run.direction:
-        return _by_number(side.spots, rising)
-    made = _with_split(side, rising if first else side.run.direction or rising)
-    return made[::-1] if against else made
+    made = _with_split(side, side.run(rising))
+    return made[::-1] if first and side.direction == -rising else made
 
 
-def _with_split(side: Along, rising: int) -> list[Spot]:
+def _with_split(side: Along, run: Run) -> list[Spot]:
     """Put lots that were split from others between the numbers that theirs is between.
 
     Where lots run against the law, so do their numbers.
     """
-    runs = side.run.direction or rising
+    runs = run.direction
     own = set(side.steady)
-    out = {side.steady[place] for place in side.run.out}
+    out = {side.steady[place] for place in (*run.out, *run.doubtful)}
     loose = [
         i for i, one in enumerate(side.spots) if i not in own and _loose(one, side)
     ]
-    places = [i for i in side.steady if i not in out]
-    numbers = [runs * (side.spots[i].number or 0.0) for i in places]
-    highest = -float("inf")
-    rising_numbers = []
-    for number in numbers:  # doubtful ones may not rise
-        highest = max(highest, number)
-        rising_numbers.append(highest)
-    where: list[tuple[float, float, int]] = [
-        (float(i), 0.0, i) for i in range(len(side.spots)) if i not in set(loose)
-    ]
+    sure = [i for i in side.steady if i not in out]
+    numbers = [runs * (side.spots[i].number or 0.0) for i in sure]
+    fixed = [i for i in range(len(side.spots)) if i not in set(loose)]
+    where: list[tuple[float, float, int]] = [(float(i), 0.0, i) for i in fixed]
     for i in loose:
-        number = runs * (side.spots[i].number or 0.0)
-        at = bisect_left(rising_numbers, number)
-        behind = places[at - 1] + 0.5 if at else places[0] - 0.5
-        where.append((behind, number, i))
+        spot = side.spots[i]
+        number = runs * (spot.number or 0.0)
+        at = bisect_left(numbers, number)
+        first = sure[at - 1] if at else -1
+        last = sure[at] if at < len(sure) else len(side.spots)
+        between = [j for j in fixed if first < j < last]
+        before = [j for j in between if side.spots[j].key < spot.key]
+        where.append((max([first, *before]) + 0.5, number, i))
     return [side.spots[i] for *_, i in sorted(where)]
 
 
@@ -140,7 +174,7 @@ def _by_number(side: Sequence[Spot], rising: int) -> list[Spot]:
     return sorted(side, key=place)
 
 
-def doubts(side: Along, *, by_lot: bool) -> Doubts:
+def doubts(side: Along, law: Law, *, by_lot: bool) -> Doubts:
     """Name the lots whose numbers do not fit their side, and why."""
     told: Doubts = []
     numbered = [one for one in side.spots if one.numbers is not None]
@@ -148,33 +182,18 @@ def doubts(side: Along, *, by_lot: bool) -> Doubts:
         if side.parity is not None and spot.parity != side.parity and len(numbered) > 1:
             others = "odd" if side.parity else "even"
             told.append((spot, f"the other numbers of its side are {others}"))
+    told += [
+        (side.spots[i], "its number is far from those beside it") for i in side.far
+    ]
     if not side.agreeing or not by_lot:
         return told
-    for place in side.run.out:
+    run = side.run(side.rising(law))
+    for place in run.out:
         told.append(
             (side.spots[side.steady[place]], "its number runs against those beside it")
         )
-    pair = [side.spots[side.steady[place]] for place in side.run.doubtful]
-    for spot in pair:
-        others = ", ".join(one.told() for one in pair if one is not spot)
+    some = [side.spots[side.steady[place]] for place in run.doubtful]
+    for spot in some:
+        others = ", ".join(one.told() for one in some if one is not spot)
         told.append((spot, f"its number and those of {others} contradict each other"))
-    return told + _far(side)
-
-
-def _far(side: Along) -> Doubts:
-    """Name an end of a side whose number is far from all the rest."""
-    numbers = sorted(
-        (side.spots[i].number or 0.0, i)
-        for i in side.steady
-        if i not in {side.steady[place] for place in side.run.out}
-    )
-    told: Doubts = []
-    if len(numbers) < 3:
-        return told
-    for (end, i), (near, _), (other, _) in (
-        (numbers[0], numbers[1], numbers[-1]),
-        (numbers[-1], numbers[-2], numbers[0]),
-    ):
-        if abs(end - near) > max(FAR, FARTHER * abs(other - near)):
-            told.append((side.spots[i], "its number is far from those beside it"))
     return told

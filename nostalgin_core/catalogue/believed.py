@@ -1,18 +1,20 @@
 """On which street a lot is believed to stand, whatever one row says.
 
-Three witnesses speak: the street that is listed, the house number, which has its gap on
-some streets of the block and not on others, and the lots before and after. A street is
-set aside where the other two are against it: the number has no gap there, and has one
-on the neighbours' street; or the lot stands between two of another street. Where a
-number fits no street, and the lot stands where a side must be between two parallel
-streets, it stands on a side of its own.
+Three witnesses speak: the street that is listed, the house number, which is near to the
+numbers of some streets and not of others, and the lots before and after. A street is set
+aside where the other two are against it: the number has its gap on the neighbours'
+street, and is not near to any on its own. One witness may be a slip itself, so that it
+takes two lots of a street to draw another there, or two of its own to drive it away.
+Where a number fits no street, and the lot stands where a side must be between two
+parallel streets, it stands on a side of its own.
 """
 
 from bisect import bisect_left
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 
-from nostalgin_core.catalogue.faces import Faces, faces
+from nostalgin_core.catalogue.faces import WITNESSES, Faces, faces
 from nostalgin_core.catalogue.spots import Spot, family, folded
 
 UNKNOWN = "an unknown street"
@@ -31,10 +33,13 @@ def believed(some: Sequence[Spot]) -> tuple[list[Spot], Doubts]:
     if not anchors:
         return list(some), []
     streets = {folded(some[index].street) for index in anchors}
+    twins = _twins(some, known)
     placed, doubts = [], []
     for index, spot in enumerate(some):
         before, after = _neighbours(some, anchors, index)
-        street, why = _street(index, spot, (before, after), known, streets)
+        street, why = _street(
+            index, spot, (before, after), known, streets, twins.get(index)
+        )
         if folded(street) != folded(spot.street) or why:
             doubts.append((spot, why))
         numbers = spot.numbers
@@ -61,6 +66,7 @@ def _street(
     beside: tuple[Spot, Spot],
     known: Faces,
     streets: set[str],
+    twin: Spot | None,
 ) -> tuple[str, str]:
     """Choose a spot's street, and say why if it is not the listed one."""
     p, q = (one.street for one in beside)
@@ -68,27 +74,51 @@ def _street(
     own = folded(spot.street)
     if not own:
         return _without_street(index, spot, near, known)
-    inside = own in map(folded, near)
-    if (inside and len(near) == 1) or len(streets) == 1:
+    if twin is not None:
+        return twin.street, f"row {twin.row} has that number on {twin.street}"
+    amid = len(near) == 1 and not spot.split
+    if (amid and own == folded(p)) or len(streets) == 1:
         return spot.street, ""
     if spot.numbers is None:
-        if len(near) == 1 and not spot.split:
-            return p, f"the lots before and after it stand on {p}"
+        return (p, _beside(p)) if amid else (spot.street, "")
+    if known.near(spot.street, spot.numbers, index):
         return spot.street, ""
-    if known.fits(spot.street, spot.numbers, index):
+    against = known.against(spot.street, spot.numbers, index)
+    gap = _gap(index, spot, near, known, least=WITNESSES - against)
+    if gap:
+        return gap, f"its number has its gap on {gap}"
+    if against < WITNESSES:
         return spot.street, ""
-    others = [one for one in near if folded(one) != own]
-    gaps = [one for one in others if known.fits(one, spot.numbers, index)]
-    if gaps:
-        return gaps[0], f"its number has its gap on {gaps[0]}"
-    if len(near) == 1 and not spot.split:
-        return p, f"the lots before and after it stand on {p}"
-    parallel = len(near) == 2 and family(p) == family(q) != ""
-    if parallel and (inside or _elsewhere(own, known, index)) and not spot.split:
+    if amid:
+        return p, _beside(p)
+    if len(near) == 2 and family(p) == family(q) != "" and not spot.split:
         return UNKNOWN, f"its number fits no street between {p} and {q}"
-    if not inside and (spot.split or _elsewhere(own, known, index)):
+    if own not in map(folded, near):
         return p, "its number fits no street of its block"
     return spot.street, ""
+
+
+def _beside(street: str) -> str:
+    return f"the lots before and after it stand on {street}"
+
+
+def _gap(
+    index: int, spot: Spot, near: Sequence[str], known: Faces, *, least: int
+) -> str:
+    """Find another street where a number has its gap, the neighbours' streets first.
+
+    Farther away it takes two witnesses.
+    """
+    numbers = spot.numbers or (0.0, 0.0)
+    for street in [*near, *known.named.values()]:
+        witnesses = max(least, 1) if street in near else WITNESSES
+        if (
+            folded(street) != folded(spot.street)
+            and known.fits(street, numbers, index)
+            and known.near(street, numbers, index) >= witnesses
+        ):
+            return street
+    return ""
 
 
 def _without_street(
@@ -101,14 +131,28 @@ def _without_street(
     return street, f"it names no street, and is placed on {street} {why}"
 
 
-def _elsewhere(street: str, known: Faces, index: int) -> bool:
-    """Tell whether another lot of the block has a number on a street."""
-    return any(
-        place != index
-        for (one, _), face in known.by_face.items()
-        if one == street
-        for *_, place in face[:2]
-    )
+def _twins(some: Sequence[Spot], known: Faces) -> dict[int, Spot]:
+    """Find the spots whose lot has the same number on another street with better right.
+
+    That is, in more rows; or near to the numbers there, and not on its own.
+    """
+    same: dict[tuple[str, object], list[int]] = defaultdict(list)
+    for index, spot in enumerate(some):
+        if spot.numbers and spot.street:
+            same[spot.lot, spot.numbers].append(index)
+    better = {}
+    for own in same.values():
+        if len(own) < 2:
+            continue
+
+        def right(index: int) -> tuple[int, int, int]:
+            spot = some[index]
+            near = known.near(spot.street, spot.numbers or (0.0, 0.0), index)
+            return spot.rows, near, -spot.row
+
+        best = max(own, key=right)
+        better |= {index: some[best] for index in own if index != best}
+    return better
 
 
 def _once(some: Sequence[Spot], placed: Sequence[Spot]) -> list[Spot]:

@@ -27,6 +27,7 @@ from nostalgin_core.catalogue.spots import Spot, folded
 CUT: Final = 1.5  # slips: more than one, less than two
 FEW: Final = 4  # lots: that so many slipped alike is not weighed one by one
 CHANGE: Final = 0.75  # of parity, on the walk: a lone lot between two is no change
+LONE: Final = 0.4  # or it is one
 
 
 def split(some: Sequence[Spot]) -> list[list[Spot]]:
@@ -41,10 +42,11 @@ def _cut(some: list[Spot]) -> list[list[Spot]]:
     known = faces(anchors)
     best: tuple[float, str, list[int]] | None = None
     for street in _both_parities(anchors):
-        labels = _labels(anchors, street)
-        gain = _uncut(anchors, street, known) - _cost(anchors, street, labels)
-        if labels and gain > 0 and (best is None or gain > best[0]):
-            best = (gain, street, labels)
+        for change in (CHANGE, LONE):
+            labels = _labels(anchors, street, change)
+            gain = _uncut(anchors, street, known) - _cost(anchors, street, labels)
+            if labels and gain > 0 and (best is None or gain > best[0]):
+                best = (gain, street, labels)
     if best is None:
         return [some]
     _, street, labels = best
@@ -89,6 +91,8 @@ def _slipped(some: Sequence[Spot], index: int, known: Faces) -> bool:
     if spot.numbers is None:
         return True
     street = folded(spot.street)
+    if not any(known.near(spot.street, one, index) for one in flipped(spot.numbers)):
+        return True  # no number of this stretch at all
     before = _beside(some, index, -1, street, 1 - (spot.parity or 0))
     after = _beside(some, index, 1, street, 1 - (spot.parity or 0))
     if before is None or after is None:
@@ -115,10 +119,10 @@ def _beside(
     return None
 
 
-def _labels(some: Sequence[Spot], street: str) -> list[int]:
+def _labels(some: Sequence[Spot], street: str, change: float) -> list[int]:
     """Tell on which ring each lot stands if the street is cut; empty if none fits."""
     along = [i for i, spot in enumerate(some) if folded(spot.street) == street]
-    own = _smoothed([some[i].parity for i in along])
+    own = _smoothed([some[i].parity for i in along], change)
     if len(set(own)) < 2 or _impure([some[i].parity for i in along], own):
         return []
     labels = [-1] * len(some)
@@ -155,13 +159,18 @@ def _where_new(
     again = [len(own & streets) for streets in met]
     if again[0] != again[1]:
         return int(again[1] < again[0])
+    along = [
+        at for s, at in zip(some, labels, strict=True) if folded(s.street) == street
+    ]
+    if 1 in (along.count(0), along.count(1)) and len(along) > 2:
+        return int(along.count(0) == 1)  # an island has no other street
     turn = some[-1].key - some[0].key + 1.0
     before = (some[between[0]].key - some[ends[0]].key) % turn
     after = (some[ends[1]].key - some[between[-1]].key) % turn
     return labels[ends[0]] if before <= after else labels[ends[1]]
 
 
-def _smoothed(parities: Sequence[int | None]) -> list[int]:
+def _smoothed(parities: Sequence[int | None], change: float) -> list[int]:
     """Find the ring of each lot of a cutting street: as few changes as explain most.
 
     The walk is round, so that it is taken twice and the second half kept.
@@ -171,7 +180,7 @@ def _smoothed(parities: Sequence[int | None]) -> list[int]:
     for parity in twice:
         # of two ways that cost the same, the parity changes late
         ways = [
-            min((costs[1 - at] + CHANGE, False, 1 - at), (costs[at], True, at))
+            min((costs[1 - at] + change, False, 1 - at), (costs[at], True, at))
             for at in (0, 1)
         ]
         origins.append([came_from for *_, came_from in ways])
@@ -218,35 +227,28 @@ def _all(
     if len(anchors) == len(some):
         return list(labels)
     keys = [one.key for one in anchors]
-    own: dict[str, set[int]] = defaultdict(set)
     known = {id(one): label for one, label in zip(anchors, labels, strict=True)}
+    reach: dict[tuple[str, int], list[float]] = defaultdict(list)
     for one, label in zip(anchors, labels, strict=True):
-        own[folded(one.street)].add(label)
+        reach[folded(one.street), label] += one.numbers or ()
     made = []
     for spot in some:
-        on = own[folded(spot.street)]
-        near = bisect_right(keys, spot.key) - 1
+        on = folded(spot.street)
         if id(spot) in known:
             made.append(known[id(spot)])
-        elif folded(spot.street) == street and spot.parity is not None:
+        elif on == street and spot.parity is not None:
             made.append(spot.parity)
-        elif len(on) == 1:
-            made.append(next(iter(on)))
         else:
-            made.append(_nearest(anchors, labels, spot, near))
+            near = labels[bisect_right(keys, spot.key) - 1]
+            amid = [
+                label
+                for label in (near, 1 - near)
+                if spot.number is not None
+                and (numbers := reach[on, label])
+                and min(numbers) <= spot.number <= max(numbers)
+            ]
+            made.append((amid or [near])[0])
     return made
-
-
-def _nearest(
-    anchors: Sequence[Spot], labels: Sequence[int], spot: Spot, near: int
-) -> int:
-    """Find the ring of the nearest lot by key on the same street, or of any."""
-    on = [
-        (abs(one.key - spot.key), label)
-        for one, label in zip(anchors, labels, strict=True)
-        if folded(one.street) == folded(spot.street)
-    ]
-    return min(on)[1] if on else labels[near]
 
 
 def lone(rings: Sequence[Sequence[Spot]]) -> list[Spot]:

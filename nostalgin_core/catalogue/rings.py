@@ -28,7 +28,7 @@ from nostalgin_core.catalogue.crowded import uncrowded
 from nostalgin_core.catalogue.cuts import lone, split
 from nostalgin_core.catalogue.directions import Law, directions
 from nostalgin_core.catalogue.entry import Entry
-from nostalgin_core.catalogue.faces import faces
+from nostalgin_core.catalogue.faces import Faces, faces
 from nostalgin_core.catalogue.lengths import assumed_width
 from nostalgin_core.catalogue.sides import sides_of, unwrapped, with_empty_sides
 from nostalgin_core.catalogue.spots import Spot, folded, spots
@@ -43,7 +43,33 @@ class _Inferred:
     rings: list[list[Along | None]]  # None: a side without lots
     by_lot: bool  # lots and numbers agree, so that lots order
     first: float  # the key of the first lot
-    warnings: list[str]
+    known: Faces
+    doubts: list[tuple[Spot, str]]
+
+    def ruled(self) -> list[str]:
+        """List the streets whose law decides how lots stand."""
+        return [
+            folded(side.spots[0].street)
+            for ring in self.rings
+            for side in ring
+            if side is not None
+            and len(side.steady) > 1
+            and (not self.by_lot or self.begins(side) or not side.direction)
+        ]
+
+    def warnings(self, law: Law) -> list[str]:
+        """Tell of the lots that were set aside, with their likeliest corrections."""
+        sides = [side for ring in self.rings for side in ring if side is not None]
+        misfits = [
+            one
+            for side in sides
+            for one in along.doubts(side, law, by_lot=self.by_lot)
+        ]
+        return told([*self.doubts, *misfits], sides, self.known)
+
+    def begins(self, side: Along) -> bool:
+        """Tell whether a block's lots begin on a side."""
+        return any(one.key <= self.first for one in side.spots)
 
     def fronts(self, law: Law) -> list[Front]:
         """Order every side by the law of its street."""
@@ -56,7 +82,7 @@ class _Inferred:
                     side,
                     law,
                     by_lot=self.by_lot,
-                    first=any(one.key <= self.first for one in side.spots),
+                    first=self.begins(side),
                 )
                 for side in ring
             ]
@@ -84,14 +110,16 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
         if any(spot.side is not None for spot in some):
             warnings.append(f"block {block}: only some rows give a side; none is used")
         inferred[block] = _inferred(some)
-        warnings += inferred[block].warnings
     law, doubts = directions(
         [
             [None if side is None else side.facts() for side in ring]
             for one in inferred.values()
             for ring in one.rings
-        ]
+        ],
+        {street for one in inferred.values() for street in one.ruled()},
     )
+    for one in inferred.values():
+        warnings += one.warnings(law)
     made: list[Front] = []
     for block in blocks:
         made += given[block] if block in given else inferred[block].fronts(law)
@@ -113,12 +141,11 @@ def _inferred(some: list[Spot]) -> _Inferred:
         )
     every = [side for ring in stood for side in ring if side is not None]
     by_lot = along.trusted(every)
-    misfits = [one for side in every for one in along.doubts(side, by_lot=by_lot)]
     alone = [(one, "it has a ring to itself") for one in lone(rings)]
     silent = [(one, "it has no house number") for one in _silent(some, every)]
-    doubts = [*moved, *crowded, *misfits, *alone, *silent]
-    warnings = told(doubts, every, faces(placed))
-    return _Inferred(stood, by_lot, min(one.key for one in some), warnings)
+    doubts = [*moved, *crowded, *alone, *silent]
+    first = min(one.key for one in some)
+    return _Inferred(stood, by_lot, first, faces(placed), doubts)
 
 
 def _silent(some: Sequence[Spot], sides: Sequence[Along]) -> list[Spot]:

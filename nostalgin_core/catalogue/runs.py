@@ -17,37 +17,19 @@ Ranges = Sequence[tuple[float, float]]
 class Run:
     """How some numbers rise (1) or fall (-1) in the order of their lots."""
 
-    direction: int  # 0: as many say one as say the other
+    direction: int
     length: int
     out: tuple[int, ...]  # in no longest run
     doubtful: tuple[int, ...]  # in some longest runs, not in all
 
 
-def run(ranges: Ranges) -> Run:
-    """Find the longer of the longest rising and the longest falling run."""
-    up, down = _rising(ranges), _rising([(-high, -low) for low, high in ranges])
-    if up.length != down.length:
-        return Run(1, *up.rest()) if up.length > down.length else Run(-1, *down.rest())
-    votes = 0
-    for place, (low, high) in enumerate(ranges[: min(len(ranges), 64)]):
-        for after, below in ranges[place + 1 : 64]:
-            votes += (after > high) - (below < low)
-    if votes:
-        return Run(1, *up.rest()) if votes > 0 else Run(-1, *down.rest())
-    return Run(0, *up.rest())
+def runs(ranges: Ranges) -> tuple[Run, Run]:
+    """Find the longest rising run and the longest falling one."""
+    falling = [(-high, -low) for low, high in ranges]
+    return Run(1, *_rising(ranges)), Run(-1, *_rising(falling))
 
 
-@dataclass(frozen=True, slots=True)
-class _Longest:
-    length: int
-    out: tuple[int, ...]
-    doubtful: tuple[int, ...]
-
-    def rest(self) -> tuple[int, tuple[int, ...], tuple[int, ...]]:
-        return self.length, self.out, self.doubtful
-
-
-def _rising(ranges: Ranges) -> _Longest:
+def _rising(ranges: Ranges) -> tuple[int, tuple[int, ...], tuple[int, ...]]:
     before = _lengths(ranges)
     after = _lengths([(-high, -low) for low, high in reversed(ranges)])[::-1]
     longest = max(before, default=0)
@@ -59,7 +41,7 @@ def _rising(ranges: Ranges) -> _Longest:
         else:
             out.append(place)
     doubtful = [place for some in levels.values() if len(some) > 1 for place in some]
-    return _Longest(longest, tuple(out), tuple(sorted(doubtful)))
+    return longest, tuple(out), tuple(sorted(doubtful))
 
 
 def _lengths(ranges: Ranges) -> list[int]:

@@ -29,7 +29,8 @@ class Spot:
     key: float  # along the block, by lot
     split: bool  # a later split of another lot: its key is a hint
     numbers: tuple[float, float] | None  # house numbers that are believed
-    row: int
+    row: int  # the first that tells of it
+    rows: int  # how many do
     listed: str  # the street as it is listed
 
     @property
@@ -86,6 +87,7 @@ def _spot(row: Entry, position: int, *, dense: bool) -> Spot:
         split=split and row.order is None,
         numbers=numbers_of(row.address),
         row=row.row,
+        rows=1,
         listed=row.street,
     )
 
@@ -99,7 +101,7 @@ def _joined(first: Spot, second: Spot) -> Spot:
     }
     if first.numbers is None:
         empty |= {"numbers": second.numbers}
-    return replace(first, **empty)
+    return replace(first, rows=first.rows + 1, **empty)
 
 
 def _in_walk(some: list[Spot]) -> list[Spot]:
@@ -156,4 +158,5 @@ def lot_key(lot: str, position: int, *, dense: bool = False) -> tuple[float, boo
 def _dense(rows: Sequence[Entry]) -> bool:
     """Tell whether a block has so many lots that they are counted beyond a hundred."""
     lots = {int(row.lot) for row in rows if row.lot.isdecimal() and len(row.lot) < 4}
-    return any(DENSE <= lot <= SPLIT_FROM or lot >= SPLIT_TO for lot in lots)
+    many = [lot for lot in lots if DENSE <= lot <= SPLIT_FROM or lot >= SPLIT_TO]
+    return len(many) > 1  # one may be a slip

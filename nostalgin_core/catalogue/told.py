@@ -58,7 +58,8 @@ def _likely(
 
 def _between(spot: Spot, side: Along, place: int, known: Faces) -> str:
     """Find the number between a lot's neighbours that is nearest to what is written."""
-    out = {side.steady[i] for i in side.run.out}
+    run = side.run(1)
+    out = {side.steady[i] for i in run.out}
     sure = [i for i in side.steady if i not in out and i != place]
     before = [side.spots[i] for i in sure if i < place][-1:]
     after = [side.spots[i] for i in sure if i > place][:1]
@@ -67,7 +68,7 @@ def _between(spot: Spot, side: Along, place: int, known: Faces) -> str:
         return ""
     low, high = int(ends[0]), int(ends[-1])
     if len(ends) == 1:
-        rising = side.run.direction * (1 if before else -1)
+        rising = run.direction * (1 if before else -1)
         low, high = (low, low + REACH) if rising >= 0 else (max(low - REACH, 0), low)
     street = side.spots[place].street
     vacant = [
