@@ -61,12 +61,15 @@ class Along:
         """Tell how numbers run anticlockwise by the law of the street."""
         return law.get(folded(self.spots[0].street), 1) * self.sign
 
-    def facts(self) -> SideFacts | None:
-        """Tell the street, its parity (1 odd, -1 even), and how its numbers run."""
+    def facts(self, *, first: bool = False) -> SideFacts | None:
+        """Tell the street, its parity (1 odd, -1 even), and how its numbers run.
+
+        The side that has a block's first lots speaks with half its voice.
+        """
         if not any(one.numbers for one in self.spots):
             return None
         length = max(self.up.length, self.down.length)
-        votes = self.direction * length * (length - 1) / 2
+        votes = self.direction * length * (length - 1) / (4 if first else 2)
         return folded(self.spots[0].street), self.sign, votes
 
 
@@ -80,7 +83,8 @@ def along(spots: Sequence[Spot]) -> Along:
     fitting = [i for i in numbered if i not in odd_ones]
     far = _far(spots, fitting)
     fitting = [i for i in fitting if i not in far]
-    steady = [i for i in fitting if not spots[i].split] or fitting
+    steady = [i for i in fitting if not spots[i].split]
+    steady = steady if len(steady) > 1 else fitting
     up, down = runs([spots[i].numbers or (0.0, 0.0) for i in steady])
     return Along(list(spots), steady, far, up, down, parity)
 
@@ -188,11 +192,15 @@ def doubts(side: Along, law: Law, *, by_lot: bool) -> Doubts:
     if not side.agreeing or not by_lot:
         return told
     run = side.run(side.rising(law))
-    for place in run.out:
+    out, doubtful = run.out, run.doubtful
+    if not side.direction and len(side.steady) > 2:
+        both = (*side.up.out, *side.up.doubtful, *side.down.out, *side.down.doubtful)
+        out, doubtful = (), tuple(sorted(set(both)))
+    for place in out:
         told.append(
             (side.spots[side.steady[place]], "its number runs against those beside it")
         )
-    some = [side.spots[side.steady[place]] for place in run.doubtful]
+    some = [side.spots[side.steady[place]] for place in doubtful]
     for spot in some:
         others = ", ".join(one.told() for one in some if one is not spot)
         told.append((spot, f"its number and those of {others} contradict each other"))

@@ -14,7 +14,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 
-from nostalgin_core.catalogue.faces import WITNESSES, Faces, faces
+from nostalgin_core.catalogue.faces import WITNESSES, Faces, faces, flipped
 from nostalgin_core.catalogue.spots import Spot, family, folded
 
 UNKNOWN = "an unknown street"
@@ -107,10 +107,11 @@ def _gap(
 ) -> str:
     """Find another street where a number has its gap, the neighbours' streets first.
 
-    Farther away it takes two witnesses.
+    Farther away it takes two witnesses, and a number that is not just across its own.
     """
     numbers = spot.numbers or (0.0, 0.0)
-    for street in [*near, *known.named.values()]:
+    across = any(known.near(spot.street, one, index) for one in flipped(numbers))
+    for street in [*near, *(() if across else known.named.values())]:
         witnesses = max(least, 1) if street in near else WITNESSES
         if (
             folded(street) != folded(spot.street)

@@ -26,6 +26,7 @@ from nostalgin_core.catalogue.spots import Spot, folded
 
 CUT: Final = 1.5  # slips: more than one, less than two
 FEW: Final = 4  # lots: that so many slipped alike is not weighed one by one
+NEXT: Final = 12.0  # numbers: a split lot stands by one it was split from
 CHANGE: Final = 0.75  # of parity, on the walk: a lone lot between two is no change
 LONE: Final = 0.4  # or it is one
 
@@ -240,14 +241,13 @@ def _all(
             made.append(spot.parity)
         else:
             near = labels[bisect_right(keys, spot.key) - 1]
-            amid = [
-                label
-                for label in (near, 1 - near)
+            far = [
+                min((abs(one - spot.number) for one in reach[on, label]), default=NEXT)
                 if spot.number is not None
-                and (numbers := reach[on, label])
-                and min(numbers) <= spot.number <= max(numbers)
+                else NEXT
+                for label in (near, 1 - near)
             ]
-            made.append((amid or [near])[0])
+            made.append(near if far[0] <= far[1] or far[1] >= NEXT else 1 - near)
     return made
 
 

@@ -112,7 +112,7 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
         inferred[block] = _inferred(some)
     law, doubts = directions(
         [
-            [None if side is None else side.facts() for side in ring]
+            [None if s is None else s.facts(first=one.begins(s)) for s in ring]
             for one in inferred.values()
             for ring in one.rings
         ],

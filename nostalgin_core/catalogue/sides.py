@@ -53,20 +53,22 @@ def _longest_stretch(places: Sequence[int], ring: Sequence[Spot]) -> float:
     if wraps:
         first = stretches.pop(0)
         stretches[-1] += [place + count for place in first]
-    longest = max(stretches, key=len)
+    # where the lots begin they often run against the rest: of two, the later
+    longest = max(reversed(stretches), key=len)
     return (longest[0] + longest[-1]) / 2
 
 
 def with_empty_sides(rings: Sequence[list[Side]]) -> list[list[Side]]:
     """Add the sides that a ring must have though no lot of it is listed there."""
     whole = [list(ring) for ring in rings]
-    for index, ring in enumerate(whole):
-        for other in rings:
-            if other is rings[index] or len(other) < 3 or len(ring) >= 4:
+    for ring in whole:
+        _between_parallels(ring)
+    for ring in whole:
+        for other in [list(one) for one in whole if one is not ring]:
+            if len(other) < 3 or len(ring) >= 4:
                 continue
             for side in list(ring):
                 _complete(ring, side, other)
-        _between_parallels(ring)
     return whole
 
 
