@@ -182,10 +182,14 @@ def doubts(side: Along, law: Law, *, by_lot: bool) -> Doubts:
     """Name the lots whose numbers do not fit their side, and why."""
     told: Doubts = []
     numbered = [one for one in side.spots if one.numbers is not None]
+    halves = 2 * sum(one.parity or 0 for one in numbered) == len(numbered)
     for spot in numbered:
         if side.parity is not None and spot.parity != side.parity and len(numbered) > 1:
             others = "odd" if side.parity else "even"
             told.append((spot, f"the other numbers of its side are {others}"))
+        elif halves:
+            others = "even" if spot.parity else "odd"
+            told.append((spot, f"half the numbers of its side are {others}"))
     told += [
         (side.spots[i], "its number is far from those beside it") for i in side.far
     ]

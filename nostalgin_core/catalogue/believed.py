@@ -36,9 +36,10 @@ def believed(some: Sequence[Spot]) -> tuple[list[Spot], Doubts]:
     twins = _twins(some, known)
     placed, doubts = [], []
     for index, spot in enumerate(some):
-        before, after = _neighbours(some, anchors, index)
+        beside = _neighbours(some, anchors, index)
+        split = [one.street for one in some[max(index - 1, 0) : index + 2] if one.split]
         street, why = _street(
-            index, spot, (before, after), known, streets, twins.get(index)
+            index, spot, beside, split, known, streets, twins.get(index)
         )
         if folded(street) != folded(spot.street) or why:
             doubts.append((spot, why))
@@ -64,6 +65,7 @@ def _street(
     index: int,
     spot: Spot,
     beside: tuple[Spot, Spot],
+    split: Sequence[str],
     known: Faces,
     streets: set[str],
     twin: Spot | None,
@@ -84,7 +86,7 @@ def _street(
     if known.near(spot.street, spot.numbers, index):
         return spot.street, ""
     against = known.against(spot.street, spot.numbers, index)
-    gap = _gap(index, spot, near, known, least=WITNESSES - against)
+    gap = _gap(index, spot, [*near, *split], known, least=WITNESSES - against)
     if gap:
         return gap, f"its number has its gap on {gap}"
     if against < WITNESSES:

@@ -141,22 +141,39 @@ def _inferred(some: list[Spot]) -> _Inferred:
         )
     every = [side for ring in stood for side in ring if side is not None]
     by_lot = along.trusted(every)
-    alone = [(one, "it has a ring to itself") for one in lone(rings)]
-    silent = [(one, "it has no house number") for one in _silent(some, every)]
-    doubts = [*moved, *crowded, *alone, *silent]
+    doubts = [*moved, *crowded, *_alone(rings, sides), *_silent(some), *_far(placed)]
     first = min(one.key for one in some)
     return _Inferred(stood, by_lot, first, faces(placed), doubts)
 
 
-def _silent(some: Sequence[Spot], sides: Sequence[Along]) -> list[Spot]:
-    """List the lots without a number whose side has numbers for most."""
-    listed = {(one.lot, folded(one.listed)): one for one in some}
-    found = []
-    for side in sides:
-        silent = [one for one in side.spots if not one.address]
-        if silent and 2 * len(silent) < len(side.spots):
-            found += [listed.get((s.lot, folded(s.listed)), s) for s in silent]
-    return found
+def _alone(
+    rings: Sequence[Sequence[Spot]], sides: Sequence[Sequence[Sequence[Spot]]]
+) -> list[tuple[Spot, str]]:
+    """List the lots that have a ring to themselves, or a fifth side of one."""
+    fifths = [
+        side[0] for ring in sides if len(ring) > 4 for side in ring if len(side) == 1
+    ]
+    return [
+        *((one, "it has a ring to itself") for one in lone(rings)),
+        *((one, "it stands alone on one of more than four sides") for one in fifths),
+    ]
+
+
+def _silent(some: Sequence[Spot]) -> list[tuple[Spot, str]]:
+    """List the lots without a number where most have one."""
+    silent = [one for one in some if not one.address]
+    few = 2 * len(silent) < len(some)
+    return [(one, "it has no house number") for one in silent if few]
+
+
+def _far(some: Sequence[Spot]) -> list[tuple[Spot, str]]:
+    """List the lots whose numbers are far from all others on their street."""
+    known = faces(some)
+    return [
+        (one, "its number is far from the others on its street")
+        for index, one in enumerate(some)
+        if one.numbers and known.against(one.street, one.numbers, index)
+    ]
 
 
 def as_given(some: Sequence[Spot]) -> list[Front]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from nostalgin_core.catalogue.along import Along
-from nostalgin_core.catalogue.faces import Faces
+from nostalgin_core.catalogue.faces import WITNESSES, Faces
 from nostalgin_core.catalogue.spots import Spot, folded, numbers_of
 
 REACH: Final = 20  # numbers beyond the last lot of a side
@@ -45,6 +45,7 @@ def _likely(
             known.named.get(street, street)
             for street in names
             if street != folded(spot.listed) and known.fits(street, numbers, -1)
+            and known.near(street, numbers, -1) == WITNESSES
         ]
         likely += [f"{spot.address} {street}" for street in streets[:MOST]]
     if where is not None:

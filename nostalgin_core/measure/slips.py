@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.catalogue import Entry
+from nostalgin_core.catalogue import Entry, from_file_name
 from nostalgin_core.records import Front
 
 KINDS: Final = (
@@ -184,7 +184,8 @@ def _with_another(
     """List the slips that take a row for another one."""
     entry = rows[place]
     rest = [*rows[:place], *rows[place + 1 :]]
-    twice = (*rows[: place + 1], entry, *rows[place + 1 :])
+    again = replace(entry, row=max(row.row for row in rows) + 1)
+    twice = (*rows[: place + 1], again, *rows[place + 1 :])
     own = frozenset({entry.lot})
     yield Slip("doubled", "the row", entry.row, entry.block, own, twice)
     if following is None:
@@ -278,6 +279,9 @@ def followers(places: Mapping[Name, Place]) -> dict[Name, Name]:
 def names(told: str, slip: Slip) -> bool:
     """Tell whether a doubt is about a slip's row or one of its lots."""
     if re.search(rf"\brow {slip.row}\b", told):
+        return True
+    files = [from_file_name(word.strip(",;:")) for word in told.split()]
+    if any(lot in files for lot in ((slip.block, lot) for lot in slip.lots)):
         return True
     lots = re.findall(r"\blots? ([\w-]+(?:(?: \([^)]*\))?(?:,| and) [\w-]+)*)", told)
     named = {word for some in lots for word in re.findall(r"[\w-]+", some)}
