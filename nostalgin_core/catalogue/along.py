@@ -90,7 +90,7 @@ def along(spots: Sequence[Spot]) -> Along:
 
 
 def _far(spots: Sequence[Spot], places: Sequence[int]) -> list[int]:
-    """Find the lots whose numbers are far from all others of a side of three or more."""
+    """Find the lots whose numbers are far from all others, of three or more."""
     some = sorted((spots[i].numbers or (0.0, 0.0), i) for i in places)
     if len(some) < 3:
         return []
@@ -104,7 +104,7 @@ def _far(spots: Sequence[Spot], places: Sequence[int]) -> list[int]:
 
 
 def trusted(sides: Sequence[Along]) -> bool:
-    """Tell whether lots and numbers agree on most of a block, so that lots can order."""
+    """Tell whether lots and numbers agree on most of a block: then lots can order."""
     count = sum(len(side.steady) for side in sides)
     astray = sum(
         len(side.steady) - max(side.up.length, side.down.length) for side in sides
@@ -120,7 +120,11 @@ def ordered(side: Along, law: Law, *, by_lot: bool, first: bool) -> list[Spot]:
         return side.spots
     rising = side.rising(law)
     unsure = first and not side.agreeing
-    if not by_lot or unsure or (len(side.steady) > 1 and not side.run(rising).length > 1):
+    if (
+        not by_lot
+        or unsure
+        or (len(side.steady) > 1 and not side.run(rising).length > 1)
+    ):
         return _by_number(side.spots, rising)
     made = _with_split(side, side.run(rising))
     return made[::-1] if first and side.direction == -rising else made
@@ -134,14 +138,14 @@ def _with_split(side: Along, run: Run) -> list[Spot]:
     runs = run.direction
     own = set(side.steady)
     out = {side.steady[place] for place in (*run.out, *run.doubtful)}
-    loose = [
+    loose = {
         i for i, one in enumerate(side.spots) if i not in own and _loose(one, side)
-    ]
+    }
     sure = [i for i in side.steady if i not in out]
     numbers = [runs * (side.spots[i].number or 0.0) for i in sure]
-    fixed = [i for i in range(len(side.spots)) if i not in set(loose)]
+    fixed = [i for i in range(len(side.spots)) if i not in loose]
     where: list[tuple[float, float, int]] = [(float(i), 0.0, i) for i in fixed]
-    for i in loose:
+    for i in sorted(loose):
         spot = side.spots[i]
         number = runs * (spot.number or 0.0)
         at = bisect_left(numbers, number)

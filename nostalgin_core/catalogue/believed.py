@@ -1,8 +1,8 @@
 """On which street a lot is believed to stand, whatever one row says.
 
 Three witnesses speak: the street that is listed, the house number, which is near to the
-numbers of some streets and not of others, and the lots before and after. A street is set
-aside where the other two are against it: the number has its gap on the neighbours'
+numbers of some streets and not of others, and the lots before and after. A street is
+set aside where the other two are against it: the number has its gap on the neighbours'
 street, and is not near to any on its own. One witness may be a slip itself, so that it
 takes two lots of a street to draw another there, or two of its own to drive it away.
 Where a number fits no street, and the lot stands where a side must be between two
@@ -12,7 +12,7 @@ parallel streets, it stands on a side of its own.
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from nostalgin_core.catalogue.faces import WITNESSES, Faces, faces, flipped
 from nostalgin_core.catalogue.spots import Spot, family, folded
@@ -32,104 +32,119 @@ def believed(some: Sequence[Spot]) -> tuple[list[Spot], Doubts]:
     anchors = anchors or [index for index, one in enumerate(some) if one.street]
     if not anchors:
         return list(some), []
-    streets = {folded(some[index].street) for index in anchors}
     twins = _twins(some, known)
+    lone = len({folded(some[index].street) for index in anchors}) == 1
     placed, doubts = [], []
     for index, spot in enumerate(some):
-        beside = _neighbours(some, anchors, index)
-        split = [one.street for one in some[max(index - 1, 0) : index + 2] if one.split]
-        street, why = _street(
-            index, spot, beside, split, known, streets, twins.get(index)
-        )
-        if folded(street) != folded(spot.street) or why:
-            doubts.append((spot, why))
+        at = _At(index, spot, *_neighbours(some, anchors, index))
+        if index in twins:
+            twin = twins[index]
+            street, why = twin.street, f"row {twin.row} has that number there"
+        elif not spot.street:
+            street, why = _without_street(at, known)
+        else:
+            street, why = (spot.street, "") if lone else _street(at, known)
         numbers = spot.numbers
-        if spot.street and numbers and folded(street) != folded(spot.street):
-            numbers = numbers if known.fits(street, numbers, index) else None
+        if folded(street) != folded(spot.street):
+            doubts.append((spot, why))
+            if numbers and spot.street and not known.fits(street, numbers, index):
+                numbers = None
         placed.append(replace(spot, street=street, numbers=numbers))
     return _once(some, placed), doubts
 
 
+@dataclass(frozen=True, slots=True)
+class _At:
+    """A spot, and the streets of the lots beside it."""
+
+    index: int
+    spot: Spot
+    before: str
+    after: str
+    split: tuple[str, ...]  # of lots beside it that were split from others
+
+    @property
+    def near(self) -> list[str]:
+        return list(dict.fromkeys([self.before, self.after]))
+
+    @property
+    def amid(self) -> bool:
+        """Tell whether both lots beside it stand on one street."""
+        return folded(self.before) == folded(self.after) and not self.spot.split
+
+    @property
+    def numbers(self) -> tuple[float, float]:
+        return self.spot.numbers or (0.0, 0.0)
+
+
 def _neighbours(
     some: Sequence[Spot], anchors: Sequence[int], index: int
-) -> tuple[Spot, Spot]:
-    """Find the lots before and after that have a street, round the block."""
+) -> tuple[str, str, tuple[str, ...]]:
+    """Find the streets of the lots before and after that have one, round the block."""
     place = bisect_left(anchors, index)
     own = place < len(anchors) and anchors[place] == index
     before = some[anchors[place - 1]]
     after = some[anchors[(place + own) % len(anchors)]]
-    return before, after
+    split = [one.street for one in some[max(index - 1, 0) : index + 2] if one.split]
+    return before.street, after.street, tuple(split)
 
 
-def _street(
-    index: int,
-    spot: Spot,
-    beside: tuple[Spot, Spot],
-    split: Sequence[str],
-    known: Faces,
-    streets: set[str],
-    twin: Spot | None,
-) -> tuple[str, str]:
+def _street(at: _At, known: Faces) -> tuple[str, str]:
     """Choose a spot's street, and say why if it is not the listed one."""
-    p, q = (one.street for one in beside)
-    near = list(dict.fromkeys([p, q]))
-    own = folded(spot.street)
-    if not own:
-        return _without_street(index, spot, near, known)
-    if twin is not None:
-        return twin.street, f"row {twin.row} has that number on {twin.street}"
-    amid = len(near) == 1 and not spot.split
-    if (amid and own == folded(p)) or len(streets) == 1:
-        return spot.street, ""
-    if spot.numbers is None:
-        return (p, _beside(p)) if amid else (spot.street, "")
-    if known.near(spot.street, spot.numbers, index):
-        return spot.street, ""
-    against = known.against(spot.street, spot.numbers, index)
-    gap = _gap(index, spot, [*near, *split], known, least=WITNESSES - against)
+    listed, own = at.spot.street, folded(at.spot.street)
+    beside = f"the lots before and after it stand on {at.before}"
+    if at.spot.numbers is None:
+        return (at.before, beside) if at.amid else (listed, "")
+    if known.near(listed, at.numbers, at.index) or (
+        at.amid and own == folded(at.before)
+    ):
+        return listed, ""
+    against = known.against(listed, at.numbers, at.index)
+    gap = _gap(at, known, least=WITNESSES - against)
     if gap:
         return gap, f"its number has its gap on {gap}"
-    if against < WITNESSES:
-        return spot.street, ""
-    if amid:
-        return p, _beside(p)
-    if len(near) == 2 and family(p) == family(q) != "" and not spot.split:
-        return UNKNOWN, f"its number fits no street between {p} and {q}"
-    if own not in map(folded, near):
-        return p, "its number fits no street of its block"
-    return spot.street, ""
+    if against == WITNESSES:
+        return (at.before, beside) if at.amid else _nowhere(at)
+    return listed, ""
 
 
-def _beside(street: str) -> str:
-    return f"the lots before and after it stand on {street}"
+def _nowhere(at: _At) -> tuple[str, str]:
+    """Choose the street of a lot whose number fits none of its block."""
+    parallel = family(at.before) == family(at.after) != ""
+    if parallel and not at.spot.split:
+        return UNKNOWN, f"its number fits no street between {' and '.join(at.near)}"
+    if folded(at.spot.street) in map(folded, at.near):
+        return at.spot.street, ""
+    return at.before, "its number fits no street of its block"
 
 
-def _gap(
-    index: int, spot: Spot, near: Sequence[str], known: Faces, *, least: int
-) -> str:
+def _gap(at: _At, known: Faces, *, least: int) -> str:
     """Find another street where a number has its gap, the neighbours' streets first.
 
     Farther away it takes two witnesses, and a number that is not just across its own.
     """
-    numbers = spot.numbers or (0.0, 0.0)
-    across = any(known.near(spot.street, one, index) for one in flipped(numbers))
-    for street in [*near, *(() if across else known.named.values())]:
+    near = [*at.near, *at.split]
+    listed = at.spot.street
+    across = any(known.near(listed, one, at.index) for one in flipped(at.numbers))
+    for street in [*near, *(() if across else known.frequent)]:
         witnesses = max(least, 1) if street in near else WITNESSES
         if (
-            folded(street) != folded(spot.street)
-            and known.fits(street, numbers, index)
-            and known.near(street, numbers, index) >= witnesses
+            folded(street) != folded(listed)
+            and known.fits(street, at.numbers, at.index)
+            and known.near(street, at.numbers, at.index) >= witnesses
         ):
             return street
     return ""
 
 
-def _without_street(
-    index: int, spot: Spot, near: Sequence[str], known: Faces
-) -> tuple[str, str]:
+def _without_street(at: _At, known: Faces) -> tuple[str, str]:
     """Place a lot that names no street: where its number fits, or by its neighbours."""
-    gaps = [one for one in near if spot.numbers and known.fits(one, spot.numbers, index)]
-    street = (gaps or near)[0]
+    gaps = [
+        one
+        for one in at.near
+        if at.spot.numbers and known.fits(one, at.numbers, at.index)
+    ]
+    street = (gaps or at.near)[0]
     why = "where its number has its gap" if gaps else "by the lot before it"
     return street, f"it names no street, and is placed on {street} {why}"
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Sequence
-
 from typing import Final
 
 from nostalgin_core.address import house_numbers
@@ -29,9 +28,9 @@ def contradictions(rows: Sequence[Entry]) -> Iterator[str]:
         named = from_file_name(row.photo)
         if named is not None and named != (row.block, row.lot):
             yield (
-                f"block {row.block}, lot {row.lot}: row {row.row} names {row.photo}, by "
-                f"its name a photo of block {named[0]}, lot {named[1]}; mend the lot or "
-                "the photo"
+                f"block {row.block}, lot {row.lot}: row {row.row} names {row.photo}, "
+                f"by its name a photo of block {named[0]}, lot {named[1]}; mend the "
+                "lot or the photo"
             )
 
 

@@ -46,7 +46,9 @@ def _movable(some: Sequence[Spot], index: int, known: Faces) -> bool:
     if spot.numbers is None:
         return False
     beside = (some[index - 1], some[(index + 1) % len(some)])
-    round_it = [one.street for one in beside if folded(one.street) != folded(spot.street)]
+    round_it = [
+        one.street for one in beside if folded(one.street) != folded(spot.street)
+    ]
     across = any(
         known.fits(spot.street, numbers, index) for numbers in flipped(spot.numbers)
     )

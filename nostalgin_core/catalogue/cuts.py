@@ -8,16 +8,15 @@ So two explanations are weighed for each street with odd and even numbers:
   parity, or two where no number across the street would stand in its place;
 - it is cut: that counts `CUT`, and what is left in either ring counts as before.
 
-One slip counts one, so that it neither makes a cut nor undoes one. Lots of other streets
-stand on the ring of the cutting street's lots before and after them. Where these
-differ, the crossing lies at one end of theirs: they stand where their streets are not
-met twice.
+One slip counts one, so that it neither makes a cut nor undoes one. Lots of other
+streets stand on the ring of the cutting street's lots before and after them. Where
+these differ, the crossing lies at one end of theirs: they stand where their streets are
+not met twice.
 """
 
 from bisect import bisect_right
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
@@ -82,7 +81,9 @@ def _uncut(some: Sequence[Spot], street: str, known: Faces) -> int:
 def _met_again(some: Sequence[Spot]) -> int:
     """Count how often a walk round the lots meets a street it has left."""
     streets = [folded(spot.street) for spot in some]
-    runs = [a for a, b in zip(streets, [*streets[1:], *streets[:1]], strict=True) if a != b]
+    runs = [
+        a for a, b in zip(streets, [*streets[1:], *streets[:1]], strict=True) if a != b
+    ]
     return sum(count - 1 for count in Counter(runs).values())
 
 
@@ -257,12 +258,4 @@ def lone(rings: Sequence[Sequence[Spot]]) -> list[Spot]:
         ring[0]
         for ring in rings
         if len(rings) > 1 and len({one.lot for one in ring}) == 1
-    ]
-
-
-def without_numbers(some: Sequence[Spot], doubtful: set[int]) -> list[Spot]:
-    """Set the numbers of some spots aside."""
-    return [
-        replace(one, numbers=None) if index in doubtful else one
-        for index, one in enumerate(some)
     ]

@@ -61,4 +61,3 @@ def _opposites(
             if fact is not None and across is not None and fact[0] == street:
                 pairs.append((across[0], fact[1] * across[1]))
     return pairs
-

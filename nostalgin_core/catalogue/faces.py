@@ -27,6 +27,7 @@ class Faces:
     by_face: dict[tuple[str, int], list[tuple[float, float, int]]]
     named: dict[str, str]  # streets, as they are written
     lots: tuple[str, ...]  # of the spots
+    frequent: tuple[str, ...]  # streets on which several lots have numbers
 
     def fits(self, street: str, numbers: Numbers, own: int) -> bool:
         """Tell whether numbers have their gap on a street, but for the spot `own`."""
@@ -94,6 +95,7 @@ def faces(some: Sequence[Spot]) -> Faces:
         {face: sorted(own) for face, own in by_face.items()},
         named,
         tuple(one.lot for one in some),
+        tuple(dict.fromkeys(named[s] for (s, _), own in by_face.items() if own[1:])),
     )
 
 

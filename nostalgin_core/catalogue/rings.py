@@ -61,9 +61,7 @@ class _Inferred:
         """Tell of the lots that were set aside, with their likeliest corrections."""
         sides = [side for ring in self.rings for side in ring if side is not None]
         misfits = [
-            one
-            for side in sides
-            for one in along.doubts(side, law, by_lot=self.by_lot)
+            one for side in sides for one in along.doubts(side, law, by_lot=self.by_lot)
         ]
         return told([*self.doubts, *misfits], sides, self.known)
 

@@ -6,6 +6,7 @@ so is the side that must be between two parallel streets. How lots stand along a
 told in `along`.
 """
 
+import itertools
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
@@ -41,7 +42,7 @@ def _longest_stretch(places: Sequence[int], ring: Sequence[Spot]) -> float:
     count = len(ring)
     street = folded(ring[places[0]].street)
     stretches = [[places[0]]]
-    for a, b in zip(places, places[1:], strict=False):
+    for a, b in itertools.pairwise(places):
         between = ring[a + 1 : b]
         if any(folded(s.street) != street and not s.split for s in between):
             stretches.append([])

@@ -33,18 +33,16 @@ def told(
     return lines
 
 
-def _likely(
-    spot: Spot, where: tuple[Along, int] | None, known: Faces
-) -> list[str]:
+def _likely(spot: Spot, where: tuple[Along, int] | None, known: Faces) -> list[str]:
     """List the likeliest corrections of a lot's address."""
     likely = []
     numbers = numbers_of(spot.address)
     if numbers:
-        names = dict.fromkeys(street for street, _ in known.by_face)
         streets = [
-            known.named.get(street, street)
-            for street in names
-            if street != folded(spot.listed) and known.fits(street, numbers, -1)
+            street
+            for street in known.frequent
+            if folded(street) != folded(spot.listed)
+            and known.fits(street, numbers, -1)
             and known.near(street, numbers, -1) == WITNESSES
         ]
         likely += [f"{spot.address} {street}" for street in streets[:MOST]]
@@ -89,6 +87,10 @@ def _mistaken(a: str, b: str) -> int:
     if len(a) != len(b):
         return 9
     differing = [i for i in range(len(a)) if a[i] != b[i]]
-    if len(differing) == 2 and sorted(a) == sorted(b) and differing[1] - differing[0] == 1:
+    if (
+        len(differing) == 2
+        and sorted(a) == sorted(b)
+        and differing[1] - differing[0] == 1
+    ):
         return 1
     return len(differing)

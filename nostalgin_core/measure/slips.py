@@ -285,6 +285,7 @@ def names(told: str, slip: Slip) -> bool:
         return True
     lots = re.findall(r"\blots? ([\w-]+(?:(?: \([^)]*\))?(?:,| and) [\w-]+)*)", told)
     named = {word for some in lots for word in re.findall(r"[\w-]+", some)}
-    return bool(named & slip.lots) and re.search(
-        rf"\bblock {re.escape(slip.block)}\b", told
-    ) is not None
+    return (
+        bool(named & slip.lots)
+        and re.search(rf"\bblock {re.escape(slip.block)}\b", told) is not None
+    )

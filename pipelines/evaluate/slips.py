@@ -44,7 +44,7 @@ def evaluate(path: Path, *, blocks: Sequence[str] = ()) -> dict[str, Any]:
 def as_indexed(
     sound: Sequence[Entry],
 ) -> Callable[[Sequence[Entry]], tuple[Sequence[Front], Sequence[str]]]:
-    """Lay a city out as `index` does, and tell what it tells; photos stay as they are."""
+    """Lay a city out as `index` does, and tell what it tells; photos stay as given."""
     photos = sorted({entry.photo for entry in sound if entry.photo})
 
     def laid_out(rows: Sequence[Entry]) -> tuple[Sequence[Front], Sequence[str]]:
@@ -90,7 +90,8 @@ def text(report: dict[str, Any]) -> str:
         for kind, row in kinds.items():
             cells = [f"{row['slips']:>9}"]
             cells += [
-                f"{100 * row[one]:>9.2f}" for one in ("side_kept", "order_kept", "named")
+                f"{100 * row[one]:>9.2f}"
+                for one in ("side_kept", "order_kept", "named")
             ]
             cells.append(f"{row['false_alarms']:>9.2f}")
             lines.append(f"{kind:<24}" + "".join(cells))
