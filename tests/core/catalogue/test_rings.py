@@ -117,7 +117,7 @@ def test_opposite_sides_settle_a_street_that_too_few_lots_speak_for() -> None:
     assert directions([ring])[0] == {"a": -1, "east": 1, "b": -1, "west": -1}
 
 
-def test_house_numbers_that_run_against_the_lots_are_named() -> None:
+def test_a_number_that_runs_against_the_lots_is_named_and_set_aside() -> None:
     swapped = entries(
         ("1", "Elm", "101"),
         ("2", "Elm", "109"),
@@ -125,8 +125,9 @@ def test_house_numbers_that_run_against_the_lots_are_named() -> None:
         ("4", "Elm", "113"),
     )
     fronts, warnings = rings.fronts(swapped)
-    assert walk(fronts) == ["1", "3", "2", "4"]
-    assert "lots 3 (105) and 2 (109)" in warnings[0]
+    assert walk(fronts) == ["1", "2", "3", "4"]
+    assert "lot 2 (109 Elm)" in warnings[0]
+    assert "lot 3 (105 Elm)" in warnings[1]
 
 
 def test_sides_that_a_catalogue_gives_are_taken() -> None:
