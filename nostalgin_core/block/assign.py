@@ -66,12 +66,11 @@ def two_fronted(
 
 
 def _two_streets(front: Front, sure: Sequence[Seen]) -> bool:
-    seen = log(first.aspect / second.aspect)
-    listed = log(front.width_m / front.depth_m)
     first, second = sorted(sure[:2], key=lambda one: one.left_px)
     if front.depth_m is None or front.width_assumed:
         return min(first.target_score, second.target_score) >= BEFORE_BOTH
-    seen, listed = log(first.aspect / second.aspect), log(front.width_m / front.depth_m)
+    seen = log(first.aspect / second.aspect)
+    listed = log(front.width_m / front.depth_m)
     return min(abs(seen - listed), abs(seen + listed)) <= log(MISMATCH)
 
 

@@ -61,6 +61,7 @@ def block(
         block=name,
         buildings=tuple(raised(footprints, shown, copied=copied)),
         outline_m=tuple(ring.outline_m for ring in placed),
+        closure_m=tuple(ring.closure_m for ring in placed),
     )
 
 
