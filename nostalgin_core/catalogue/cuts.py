@@ -99,15 +99,14 @@ def _slipped(some: Sequence[Spot], index: int, known: Faces) -> bool:
     after = _beside(some, index, 1, street, 1 - (spot.parity or 0))
     if before is None or after is None:
         return False
-    amid = all(folded(some[(index + s) % len(some)].street) == street for s in (-1, 1))
-    if amid and 0 < index < len(some) - 1:
-        return True
-    a, b = sorted((some[before].number or 0.0, some[after].number or 0.0))
-    return any(
-        known.fits(spot.street, numbers, index)
-        and (a < numbers[0] and numbers[1] < b if before < index < after else True)
-        for numbers in flipped(spot.numbers)
-    )
+    low, high = sorted((some[before].number or 0.0, some[after].number or 0.0))
+    fitting = [
+        one for one in flipped(spot.numbers) if known.fits(spot.street, one, index)
+    ]
+    if any(folded(some[(index + s) % len(some)].street) != street for s in (-1, 1)):
+        return bool(fitting)
+    first_or_last = index in (0, len(some) - 1)
+    return not first_or_last or any(low < a and b < high for a, b in fitting)
 
 
 def _beside(
