@@ -141,7 +141,7 @@ def _inferred(some: list[Spot]) -> _Inferred:
     by_lot = along.trusted(every)
     doubts = [*moved, *crowded, *_alone(rings, sides), *_silent(some), *_far(placed)]
     first = min(one.key for one in some)
-    return _Inferred(stood, by_lot, first, faces(placed), doubts)
+    return _Inferred(stood, by_lot, first, faces(some), doubts)
 
 
 def _alone(
