@@ -22,7 +22,7 @@ def contradictions(rows: Sequence[Entry]) -> Iterator[str]:
         first = seen.setdefault(says, row.row)
         if first != row.row:
             yield (
-                f"block {row.block}, lot {row.lot}: rows {first} and row {row.row} say "
+                f"block {row.block}, lot {row.lot}: row {first} and row {row.row} say "
                 "the same; delete one of them"
             )
         named = from_file_name(row.photo)
