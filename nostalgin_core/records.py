@@ -227,6 +227,7 @@ class Block:
     block: str
     buildings: tuple[Building, ...]
     outline_m: tuple[Points, ...]  # one closed outline a ring
+    closure_m: tuple[float, ...] = ()  # by how much each ring missed its start
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,6 +8,7 @@ that the front can wear the best.
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from math import log
 
 from nostalgin_core.block.corner import building
 from nostalgin_core.records import Assignment, Front, Rejection, Seen
@@ -16,6 +17,8 @@ ENOUGH_PX = 900.0  # visible pixels: a facade of 30 by 30 tells hardly a window
 NARROWEST, WIDEST = 0.04, 12.0  # width / height of a front
 SURE = 0.25  # a target score below which no facade counts for a corner
 SECOND = 0.6  # of the best target score, which a corner's second facade must reach
+BEFORE_BOTH = 0.5  # target score of a second front whose length no list gives
+MISMATCH = 2.5  # of two facades' widths to the lot's: quads at corners are rough
 HALF_AREA_PX = 20_000.0  # a facade of this many pixels gets half the credit for size
 HALF_SPREAD = 0.15  # so does one whose aspect is known to 15 %
 
@@ -46,14 +49,29 @@ def two_fronted(
     candidates: Mapping[str, Sequence[str]],
     seen: Sequence[Seen],
 ) -> frozenset[str]:
-    """Name the buildings that a photo shows two facades of."""
+    """Name the buildings that a photo shows two street fronts of.
+
+    A second facade may be a neighbour's or a party wall. It is believed where the list
+    gives the lot's depth, and both facades are as wide to each other as the lot's two
+    lengths; else, where the board or the middle of the picture is before it as well.
+    """
     found = set()
     for photo, names in candidates.items():
         usable = [one for one in seen if one.photo == photo and not _fault(one)]
-        buildings = {building(front) for front in fronts if front.front_id in names}
-        if len(buildings) == 1 and len(_sure(usable)) >= 2:
-            found |= buildings
+        own = [front for front in fronts if front.front_id in names]
+        sure = _sure(usable)
+        if len({building(front) for front in own}) == 1 and len(sure) >= 2:
+            found |= {building(front) for front in own if _two_streets(front, sure)}
     return frozenset(found)
+
+
+def _two_streets(front: Front, sure: Sequence[Seen]) -> bool:
+    first, second = sorted(sure[:2], key=lambda one: one.left_px)
+    if front.depth_m is None or front.width_assumed:
+        return min(first.target_score, second.target_score) >= BEFORE_BOTH
+    seen = log(first.aspect / second.aspect)
+    listed = log(front.width_m / front.depth_m)
+    return min(abs(seen - listed), abs(seen + listed)) <= log(MISMATCH)
 
 
 def score(one: Seen) -> float:

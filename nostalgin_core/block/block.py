@@ -24,6 +24,7 @@ from nostalgin_core.records import Assignment, Block, Building, Front, Texture
 
 FALLBACK_GAP_M = 24.0
 NEIGHBOURS = 4
+SLIPS = 0.34  # of a side's house numbers: beyond, both parities stand on it
 WIDTH_SD, HEIGHT_SD = 0.4, 0.6  # of the logarithms: heights vary more than widths
 
 Aspects = Mapping[Texture, Mapping[str, Any]]  # aspect, its spread, and storeys
@@ -64,6 +65,7 @@ def block(
         block=name,
         buildings=tuple(raised(footprints, shown, guessed, copied=copied)),
         outline_m=tuple(ring.outline_m for ring in placed),
+        closure_m=tuple(ring.closure_m for ring in placed),
     )
 
 
@@ -172,11 +174,15 @@ def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
 
 
 def parities(fronts: Sequence[Front], street: str) -> set[int]:
-    """Tell whether the house numbers on a street are odd (1) or even (0)."""
+    """Tell whether most house numbers on a street are odd (1) or even (0), or both."""
     numbers = [
         house_numbers(front.address) for front in fronts if front.street == street
     ]
-    return {number[0] % 2 for number in numbers if number is not None}
+    odd = [number[0] % 2 for number in numbers if number is not None]
+    rarer = min(odd.count(0), odd.count(1))
+    if rarer > SLIPS * len(odd):
+        return {0, 1}
+    return {int(2 * sum(odd) > len(odd))} if odd else set()
 
 
 def chained(rings: Sequence[Sequence[Front]]) -> list[Ring]:

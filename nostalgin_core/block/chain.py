@@ -21,6 +21,7 @@ between; in a rectangular ring they are all square to the street, and every foot
 a rectangle. A ring of one side is a straight row, a ring of two sides an open corner.
 """
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -30,8 +31,16 @@ from jaxtyping import Float
 from nostalgin_core.arrays import Corners, Points
 from nostalgin_core.block import outline
 from nostalgin_core.block.apart import apart
-from nostalgin_core.block.pieces import Piece, fitted, pieces, relative_sd, with_corners
+from nostalgin_core.block.depth import measured
+from nostalgin_core.block.pieces import (
+    Piece,
+    fitted,
+    pieces,
+    with_corners,
+)
 from nostalgin_core.records import Front
+
+NOTHING_M = 0.01  # of an opening
 
 Vector = Float[np.ndarray, " 2"]
 
@@ -54,6 +63,7 @@ class Ring:
     outline_m: Points  # the corners, anticlockwise
     headings_rad: tuple[float, ...]  # of each side, from east, anticlockwise
     closed: bool
+    closure_m: float = 0.0  # by how much the sides as measured miss their start
 
 
 def chain(
@@ -73,8 +83,11 @@ def chain(
         raise ValueError("a ring needs at least one front")
     sides = with_corners(pieces(fronts))
     closed = len(sides) > 2
+    closure_m = 0.0
     if closed:
-        lengths_m, headings = outline.close(measured(sides, leaning or {}))
+        known = measured(sides, leaning or {})
+        closure_m = outline.closure(known)
+        lengths_m, headings = outline.close(known)
     else:
         lengths_m = np.array([sum(p.width_m for p in side) for side in sides])
         headings = outline.nominal_headings(4)[: len(sides)]
@@ -82,36 +95,20 @@ def chain(
     spans = [
         fitted(side, length) for side, length in zip(sides, lengths_m, strict=True)
     ]
+    name = f"{fronts[0].block}-gap-{fronts[0].ring}"
     footprints = _walked(sides, spans, starts_m, headings, closed=closed)
+    gaps = _gaps(sides, spans, starts_m, headings, closed=closed, name=name)
+    footprints = [
+        each for one in footprints for each in (one, *gaps.get(one.building_id, ()))
+    ]
     end_m = starts_m[-1] + lengths_m[-1] * _ahead(headings[-1])
     return Ring(
         footprints=tuple(_apart(footprints, starts_m if closed else None)),
         outline_m=starts_m if closed else np.vstack([starts_m, end_m]),
         headings_rad=tuple(float(heading) for heading in headings),
         closed=closed,
+        closure_m=closure_m,
     )
-
-
-def measured(
-    sides: Sequence[Sequence[Piece]], leaning: Mapping[int, float | None]
-) -> list[outline.Measured]:
-    """Sum each side's widths, and their variances."""
-    totals = [sum(piece.width_m for piece in side) for side in sides]
-    mean_m = sum(totals) / sum(total > 0 for total in totals)
-    free = {side for side in range(len(sides)) if len(sides) != 4 or side in leaning}
-    free -= {side for side, lean in leaning.items() if lean is not None}
-    free_sd = outline.FREE_SD_RAD if len(sides) == 4 else outline.POLYGON_SD_RAD
-    return [
-        outline.Measured(
-            length_m=total or mean_m,
-            squeeze_sd=relative_sd(side) if side else outline.UNKNOWN_SD,
-            heading_rad=float(heading) + (leaning.get(index) or 0.0),
-            heading_sd_rad=free_sd if index in free else 0.0,
-        )
-        for index, (side, total, heading) in enumerate(
-            zip(sides, totals, outline.nominal_headings(len(sides)), strict=True)
-        )
-    ]
 
 
 def _ahead(heading: float) -> Vector:
@@ -144,7 +141,7 @@ def _walked(
             points.append(starts_m[end] + spans[end][last][1] * _ahead(headings[end]))
             if len(run) == 1:
                 back = piece.depth_m * _party_walls(
-                    headings, here, spans[here], index, closed=closed
+                    headings, here, spans[here], spans[here][index], closed=closed
                 )
                 points += [points[1] + back[1], points[0] + back[0]]
             elif len(run) == 2:
@@ -158,6 +155,35 @@ def _walked(
         points = [*starts_m, (starts_m[-1] + starts_m[0]) / 2]
         placed.append(_footprint(sides[0][0].building_id, points, fronts))
     return placed
+
+
+def _gaps(
+    sides: Sequence[Sequence[Piece]],
+    spans: Sequence[Sequence[tuple[float, float]]],
+    starts_m: Points,
+    headings: Float[np.ndarray, " n"],
+    *,
+    closed: bool,
+    name: str,
+) -> dict[str, list[Footprint]]:
+    """Close the openings where lots are missing, each by a building without a front.
+
+    It is as deep as the shallower of the two beside it, called by its side, and listed
+    under the building that it comes after.
+    """
+    made: dict[str, list[Footprint]] = defaultdict(list)
+    for here, side in enumerate(sides):
+        for index in range(1, len(side)):
+            gap = (spans[here][index - 1][1], spans[here][index][0])
+            if gap[1] - gap[0] < NOTHING_M:
+                continue
+            back = _party_walls(headings, here, spans[here], gap, closed=closed)
+            back = back * min(side[index - 1].depth_m, side[index].depth_m)
+            ends = starts_m[here] + np.outer(gap, _ahead(headings[here]))
+            points = [*ends, ends[1] + back[1], ends[0] + back[0]]
+            closing = _footprint(f"{name}-{here}", points, (None,))
+            made[side[index - 1].building_id].append(closing)
+    return made
 
 
 def _as_deep(points: Sequence[Vector]) -> Vector:
@@ -201,11 +227,11 @@ def _party_walls(
     headings: Float[np.ndarray, " n"],
     here: int,
     spans: Sequence[tuple[float, float]],
-    index: int,
+    span: tuple[float, float],
     *,
     closed: bool,
 ) -> Float[np.ndarray, "2 2"]:
-    """Find the ways back from the street at both ends of one piece.
+    """Find the ways back from the street at both ends of one stretch of a side.
 
     Each is one metre deep, measured square to the street.
     """
@@ -219,7 +245,7 @@ def _party_walls(
         at_end = _one_deep(_ahead(headings[(here + 1) % count]), inward)
     between = (spans[0][1], spans[-1][0]) if len(spans) > 2 else (0.0, spans[-1][1])
     length_m = max(between[1] - between[0], 1e-9)
-    share = np.clip((np.array(spans[index]) - between[0]) / length_m, 0.0, 1.0)[:, None]
+    share = np.clip((np.array(span) - between[0]) / length_m, 0.0, 1.0)[:, None]
     return at_start * (1 - share) + at_end * share
 
 

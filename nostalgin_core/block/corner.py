@@ -3,14 +3,17 @@
 A catalogue names one street a lot. But a photo of a corner building shows two of its
 facades, and a ring runs anticlockwise: seen from the crossing, the left facade stands
 on the side that ends there, the right one on the side that begins. So a lot with two
-facades in one photo gets a second front at an end of its side. If the catalogue put
-another lot there, the photograph is the umpire, and the lot moves to the end.
+facades in one photo gets a second front at an end of its side. A second facade may be
+the neighbour's or a party wall, so that house numbers beat it: a lot with a number goes
+round no corner that another lot's number stands nearer to. Between lots without numbers
+the photograph is the umpire, and the lot moves to the end.
 """
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from nostalgin_core.address import house_numbers
 from nostalgin_core.block.pieces import DEPTH_M
 from nostalgin_core.records import Front
 
@@ -114,13 +117,16 @@ def _choices(
     if count < 2:
         return []
     place = [one.front_id for one in side].index(front.front_id)
+    numbered = [house_numbers(one.address) is not None for one in side]
+    last = not (numbered[place] and any(numbered[place + 1 :]))
+    first = not (numbered[place] and any(numbered[:place]))
     corners = []
-    if count > 2 or front.side + 1 < count:
+    if last and (count > 2 or front.side + 1 < count):
         following = (front.side + 1) % count
         corners.append(
             (len(side) - 1 - place, Corner(front.ring, front.side, following))
         )
-    if count > 2 or front.side > 0:
+    if first and (count > 2 or front.side > 0):
         before = (front.side - 1) % count
         corners.append((place, Corner(front.ring, before, front.side)))
     free = [(steps, corner) for steps, corner in corners if corner not in taken]

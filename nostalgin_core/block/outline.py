@@ -45,6 +45,7 @@ class Measured:
     squeeze_sd: float  # relative
     heading_rad: float  # from east, anticlockwise
     heading_sd_rad: float = 0.0  # 0: fixed
+    stretch_sd: float | None = None  # relative; None: `STRETCH_SD`, at least squeeze_sd
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,7 +96,14 @@ def close(sides: Sequence[Measured]) -> tuple[Numbers, Numbers]:
     if len(sides) < 3 or min(side.length_m for side in sides) <= 0:
         raise ValueError(f"no ring closes over {[side.length_m for side in sides]}")
     squeeze_sd = np.array([side.squeeze_sd for side in sides])
-    stretch_sd = np.maximum(squeeze_sd, STRETCH_SD)
+    stretch_sd = np.array(
+        [
+            max(side.squeeze_sd, STRETCH_SD)
+            if side.stretch_sd is None
+            else max(side.squeeze_sd, side.stretch_sd)
+            for side in sides
+        ]
+    )
     turn_sd = np.array([side.heading_sd_rad for side in sides])
     traverse = _Traverse(
         measured_m=np.array([side.length_m for side in sides]),
@@ -114,6 +122,13 @@ def close(sides: Sequence[Measured]) -> tuple[Numbers, Numbers]:
     x = _closed(traverse, _finished(traverse, found.x))
     length_m, heading = traverse.lengths(x)
     return np.round(length_m, DIGITS), np.round(heading, DIGITS)
+
+
+def closure(sides: Sequence[Measured]) -> float:
+    """Tell by how many metres a walk along the sides as measured misses its start."""
+    length_m = np.array([side.length_m for side in sides])
+    heading = np.array([side.heading_rad for side in sides])
+    return float(np.hypot(*(length_m[:, None] * _ahead(heading)).sum(0)))
 
 
 def _finished(traverse: _Traverse, x: Unknowns) -> Unknowns:

@@ -19,8 +19,8 @@ from nostalgin_core.records import Front
 DEPTH_M = 18.0  # a lot is commonly 60 to 100 feet deep
 KNOWN_SD, ASSUMED_SD = 0.03, 0.4  # relative, of a width
 DEPTH_SD = 0.25  # of a width that is another front's depth
-GROWTH = 1.35  # an assumed width grows by no more: beyond, a gap is left open
-CLOSED_GAP = 0.03  # of a side's length
+GROWTH = 1.35  # an assumed width grows by no more: beyond, an assumed wall stands
+DOUBT = 0.03  # of a side's length, as of a width that is known
 WHOLE = 0.75  # of the opposite side's length, from which one front fills its side
 UNKNOWN_JUMP = 3  # next doors are 2 apart: rather there than between those
 
@@ -37,6 +37,7 @@ class Piece:
     lot: str
     street: str
     numbers: tuple[int, int] | None  # house numbers, to see where lots are missing
+    depth_listed: bool = False
 
 
 def pieces(fronts: Sequence[Front]) -> list[list[Piece]]:
@@ -64,6 +65,7 @@ def _piece(front: Front, name: str) -> Piece:
         lot=front.lot,
         street=front.street,
         numbers=house_numbers(front.address),
+        depth_listed=front.depth_m is not None,
     )
 
 
@@ -192,6 +194,7 @@ def _round_the_corner(piece: Piece) -> Piece:
         width_sd=DEPTH_SD,
         depth_m=piece.width_m,
         numbers=None,
+        depth_listed=False,
     )
 
 
@@ -207,7 +210,9 @@ def fitted(side: Sequence[Piece], length_m: float) -> list[tuple[float, float]]:
     A piece changes by a factor exp(s^2 k) with its relative spread s and one k for the
     side, so that what was measured well hardly moves. Where that would stretch an
     assumed width beyond `GROWTH`, the rest is left open where the house numbers jump
-    most; an opening under `CLOSED_GAP` of the side is closed by scaling.
+    most, for an assumed wall (`chain`); an opening under `DOUBT` of the side is closed
+    by scaling, for no width is known better. A building alone from corner to corner is
+    stretched, for both its corners are its own.
     """
     if not side:
         return []
@@ -222,7 +227,7 @@ def fitted(side: Sequence[Piece], length_m: float) -> list[tuple[float, float]]:
     k = most if surplus(most) <= 0 else brentq(surplus, min(least, -1.0), most)
     width_m = width_m * np.exp(variance * k)
     open_m = length_m - float(width_m.sum())
-    if len(side) == 1 or open_m < CLOSED_GAP * length_m:
+    if len(side) == 1 or open_m < DOUBT * length_m:
         width_m, open_m = width_m * length_m / width_m.sum(), 0.0
     starts_m = np.concatenate([[0.0], np.cumsum(width_m)[:-1]])
     starts_m[_widest_jump(side) + 1 :] += open_m

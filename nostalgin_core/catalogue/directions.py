@@ -11,7 +11,7 @@ numbers run opposite ways round. The surest street is settled first, and then co
 its opposites.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 Law = dict[str, int]
 SideFacts = tuple[str, int, float]  # street, parity (1 odd, -1 even), votes of its lots
@@ -21,8 +21,12 @@ OPPOSITE_VOTES = 3.0  # as three pairs of lots: one odd pair does not outweigh i
 
 def directions(
     rings: Sequence[Sequence[SideFacts | None]],
+    ruled: Collection[str] | None = None,
 ) -> tuple[Law, tuple[str, ...]]:
-    """Settle the law of each street; return warnings where nothing spoke for either."""
+    """Settle the law of each street; return warnings where nothing spoke for either.
+
+    Only streets that the law rules are warned of, if `ruled` names them.
+    """
     votes: dict[str, float] = {}
     for ring in rings:
         for fact in ring:
@@ -36,7 +40,7 @@ def directions(
             (s for s in votes if s not in law), key=lambda s: (-abs(votes[s]), s)
         )
         law[street] = 1 if votes[street] >= 0 else -1
-        if votes[street] == 0 and _long(rings, street):
+        if votes[street] == 0 and (ruled is None or street in ruled):
             warnings.append(
                 f"{street}: nothing tells which way its numbers run; give its rows a "
                 "side and an order if it is built backwards"
@@ -57,10 +61,3 @@ def _opposites(
             if fact is not None and across is not None and fact[0] == street:
                 pairs.append((across[0], fact[1] * across[1]))
     return pairs
-
-
-def _long(rings: Sequence[Sequence[SideFacts | None]], street: str) -> bool:
-    """Tell whether the direction of a street matters for any order."""
-    return any(
-        fact is not None and fact[0] == street for ring in rings for fact in ring
-    )

@@ -1,36 +1,91 @@
 """Lots become fronts, in order round each ring of their block.
 
 Nothing but the catalogue is needed: lot numbers run round a block (anticlockwise in New
-York), and house numbers run along a street, odd on one side, even on the other. So
+York), and house numbers run along a street, odd on one side, even on the other. A list
+has slips, and one slip moves one lot: each step goes by what most lots say.
 
-- a street with odd and even numbers in one block cuts it: each parity is on a ring of
-  its own, and lots between two of the same parity belong to the same ring;
-- in a ring, each street is a side (`sides`); the lots tell the order of the sides;
-- along a side, house numbers rise or fall. Each street has one law: if odd numbers rise
-  anticlockwise, even ones fall. Lots vote on it, in all blocks together; so do opposite
-  sides of a ring, for parallel streets are numbered the same way (`directions`).
+1. A lot whose number fits another street better than its own is placed there
+   (`believed`); of two lots with one number, one is set aside (`crowded`).
+2. A street with odd and even numbers in one block cuts it into rings (`cuts`).
+3. In a ring, each street is a side; the lots tell the order of the sides (`sides`).
+4. Along a side lots and numbers run together; a number that does not is set aside
+   (`along`). Which way they run where lots do not tell, the other streets say
+   (`directions`).
 
-A lot above 100 is a later split of the lot with its last two digits: 104 stands by 4.
+What was set aside is told, with its likeliest corrections (`told`). A lot above 100 is
+a later split of the lot with its last two digits: 104 stands by 4.
 """
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-import numpy as np
-
-from nostalgin_core.catalogue.directions import directions
+from nostalgin_core.catalogue import along
+from nostalgin_core.catalogue.along import Along
+from nostalgin_core.catalogue.believed import UNKNOWN, believed
+from nostalgin_core.catalogue.contradictions import contradictions
+from nostalgin_core.catalogue.crowded import uncrowded
+from nostalgin_core.catalogue.cuts import lone, split
+from nostalgin_core.catalogue.directions import Law, directions
 from nostalgin_core.catalogue.entry import Entry
+from nostalgin_core.catalogue.faces import Faces, faces
 from nostalgin_core.catalogue.lengths import assumed_width
-from nostalgin_core.catalogue.sides import (
-    disorder,
-    in_order,
-    side_facts,
-    sides_of,
-    with_empty_sides,
-)
+from nostalgin_core.catalogue.sides import sides_of, unwrapped, with_empty_sides
 from nostalgin_core.catalogue.spots import Spot, folded, spots
+from nostalgin_core.catalogue.told import told
 from nostalgin_core.records import Front
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Inferred:
+    """The rings of one block, side by side, and what was told of its lots."""
+
+    rings: list[list[Along | None]]  # None: a side without lots
+    by_lot: bool  # lots and numbers agree, so that lots order
+    first: float  # the key of the first lot
+    known: Faces
+    doubts: list[tuple[Spot, str]]
+
+    def ruled(self) -> list[str]:
+        """List the streets whose law decides how lots stand."""
+        return [
+            folded(side.spots[0].street)
+            for ring in self.rings
+            for side in ring
+            if side is not None
+            and len(side.steady) > 1
+            and (not self.by_lot or self.begins(side) or not side.direction)
+        ]
+
+    def warnings(self, law: Law) -> list[str]:
+        """Tell of the lots that were set aside, with their likeliest corrections."""
+        sides = [side for ring in self.rings for side in ring if side is not None]
+        misfits = [
+            one for side in sides for one in along.doubts(side, law, by_lot=self.by_lot)
+        ]
+        return told([*self.doubts, *misfits], sides, self.known)
+
+    def begins(self, side: Along) -> bool:
+        """Tell whether a block's lots begin on a side."""
+        return any(one.key <= self.first for one in side.spots)
+
+    def fronts(self, law: Law) -> list[Front]:
+        """Order every side by the law of its street."""
+        made = []
+        for number, ring in enumerate(self.rings):
+            sides = [
+                []
+                if side is None
+                else along.ordered(
+                    side,
+                    law,
+                    by_lot=self.by_lot,
+                    first=self.begins(side),
+                )
+                for side in ring
+            ]
+            made += numbered(started(sides), ring=number)
+        return made
 
 
 def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]]:
@@ -43,30 +98,80 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
         blocks[entry.block].append(entry)
     warnings: list[str] = []
     given: dict[str, list[Front]] = {}
-    inferred: dict[str, list[list[list[Spot]]]] = {}
+    inferred: dict[str, _Inferred] = {}
     for block, rows in blocks.items():
-        some = spots(rows)
+        some, doubts = spots(rows)
+        warnings += [*contradictions(rows), *doubts]
         if all(spot.side is not None for spot in some):
             given[block] = as_given(some)
             continue
         if any(spot.side is not None for spot in some):
             warnings.append(f"block {block}: only some rows give a side; none is used")
-        inferred[block] = [sides_of(ring) for ring in split(some)]
-        inferred[block] = with_empty_sides(inferred[block])
+        inferred[block] = _inferred(some)
     law, doubts = directions(
-        [side_facts(ring) for rings in inferred.values() for ring in rings]
+        [
+            [None if s is None else s.facts(first=one.begins(s)) for s in ring]
+            for one in inferred.values()
+            for ring in one.rings
+        ],
+        {street for one in inferred.values() for street in one.ruled()},
     )
+    for one in inferred.values():
+        warnings += one.warnings(law)
     made: list[Front] = []
     for block in blocks:
-        if block in given:
-            made += given[block]
-            continue
-        for number, ring in enumerate(inferred[block]):
-            ordered = [in_order(side, law) for side in ring]
-            first = min(spot.key for side in ring for spot in side)
-            warnings += [doubt for side in ordered for doubt in disorder(side, first)]
-            made += numbered(started(ordered), ring=number)
+        made += given[block] if block in given else inferred[block].fronts(law)
     return distinct(made), (*warnings, *doubts)
+
+
+def _inferred(some: list[Spot]) -> _Inferred:
+    """Find the rings and sides of one block."""
+    placed, moved = believed(some)
+    sure, crowded = uncrowded(placed)
+    rings = split(sure)
+    sides = with_empty_sides([sides_of(ring) for ring in rings])
+    stood: list[list[Along | None]] = []
+    for ring, lots in zip(sides, rings, strict=True):
+        keys = dict.fromkeys((one.key, one.lot) for one in lots)
+        places = {name: place for place, name in enumerate(keys)}
+        stood.append(
+            [along.along(unwrapped(side, places)) if side else None for side in ring]
+        )
+    every = [side for ring in stood for side in ring if side is not None]
+    by_lot = along.trusted(every)
+    doubts = [*moved, *crowded, *_alone(rings, sides), *_silent(some), *_far(placed)]
+    first = min(one.key for one in some)
+    return _Inferred(stood, by_lot, first, faces(some), doubts)
+
+
+def _alone(
+    rings: Sequence[Sequence[Spot]], sides: Sequence[Sequence[Sequence[Spot]]]
+) -> list[tuple[Spot, str]]:
+    """List the lots that have a ring to themselves, or a fifth side of one."""
+    fifths = [
+        side[0] for ring in sides if len(ring) > 4 for side in ring if len(side) == 1
+    ]
+    return [
+        *((one, "it has a ring to itself") for one in lone(rings)),
+        *((one, "it stands alone on one of more than four sides") for one in fifths),
+    ]
+
+
+def _silent(some: Sequence[Spot]) -> list[tuple[Spot, str]]:
+    """List the lots without a number where most have one."""
+    silent = [one for one in some if not one.address]
+    few = 2 * len(silent) < len(some)
+    return [(one, "it has no house number") for one in silent if few]
+
+
+def _far(some: Sequence[Spot]) -> list[tuple[Spot, str]]:
+    """List the lots whose numbers are far from all others on their street."""
+    known = faces(some)
+    return [
+        (one, "its number is far from the others on its street")
+        for index, one in enumerate(some)
+        if one.numbers and known.against(one.street, one.numbers, index)
+    ]
 
 
 def as_given(some: Sequence[Spot]) -> list[Front]:
@@ -81,73 +186,6 @@ def as_given(some: Sequence[Spot]) -> list[Front]:
         made.append(_front(spot, ring=ring, side=spot.side or 0, rank=ranks[ring]))
         ranks[ring] += 1
     return made
-
-
-def split(some: Sequence[Spot]) -> list[list[Spot]]:
-    """Split a block's lots, in order of lot, into its rings."""
-    some = _with_parities(some)
-    rings = [list(some)]
-    for street in cuts(some):
-        halves = []
-        for ring in rings:
-            parts = [_nearest_parity(ring, street, spot) for spot in ring]
-            halves += [
-                [one for one, p in zip(ring, parts, strict=True) if p == parity]
-                for parity in dict.fromkeys(parts)
-            ]
-        rings = halves
-    return sorted(rings, key=lambda ring: ring[0].key)
-
-
-def _with_parities(some: Sequence[Spot]) -> list[Spot]:
-    """Give a lot without a number the parity of the lot before it on its street."""
-    last: dict[str, int | None] = {}
-    for spot in reversed(some):  # so that a first lot takes that of the one after it
-        last[folded(spot.street)] = (
-            spot.parity if spot.parity is not None else last.get(folded(spot.street))
-        )
-    given = []
-    for spot in some:
-        street = folded(spot.street)
-        parity = last.get(street) if spot.parity is None else spot.parity
-        last[street] = parity
-        given.append(replace(spot, parity=parity))
-    return given
-
-
-def cuts(some: Sequence[Spot]) -> list[str]:
-    """List the streets that cut a block: numbers turn odd once and even once, by lot.
-
-    Where they change more often, both kinds stand on one side (as on a street with a
-    park across it) or one is a slip; either way nothing is cut.
-    """
-    runs: dict[str, list[int]] = defaultdict(list)
-    for spot in some:
-        if spot.parity is not None:
-            runs[folded(spot.street)].append(spot.parity)
-    return [
-        street
-        for street, parities in runs.items()
-        if sum(a != b for a, b in zip(parities, np.roll(parities, 1), strict=True)) == 2
-        and min(Counter(parities).values()) > 1
-    ]
-
-
-def _nearest_parity(ring: Sequence[Spot], street: str, spot: Spot) -> int | None:
-    """Tell on which side of a cutting street a lot lies, by its neighbours along it."""
-    if folded(spot.street) == street:
-        return spot.parity
-    along = [one for one in ring if folded(one.street) == street]
-    if not along:
-        return None
-    turn = max(one.key for one in ring) - min(one.key for one in ring) + 1.0
-
-    def after(one: Spot) -> float:
-        return (one.key - spot.key) % turn
-
-    following, leading = min(along, key=after), max(along, key=after)
-    nearer = min(following, leading, key=lambda one: min(after(one), turn - after(one)))
-    return following.parity if following.parity == leading.parity else nearer.parity
 
 
 def distinct(made: Sequence[Front]) -> tuple[Front, ...]:
@@ -194,7 +232,7 @@ def _front(spot: Spot, *, ring: int, side: int, rank: int) -> Front:
         ring=ring,
         side=side,
         rank=rank,
-        street=spot.street,
+        street="" if spot.street == UNKNOWN else spot.street,
         address=spot.address,
         width_m=assumed_width(spot.address) if spot.width_m is None else spot.width_m,
         depth_m=spot.depth_m,

@@ -1,59 +1,91 @@
 """The sides of a ring: its lots by street, in the order in which one walks round it.
 
-The lots tell the order of the sides. Along a side, house numbers rise or fall by the
-law of its street (`directions`); lots without one go by their lot. A cutting street
-ends on the same two streets in both its rings: where a ring lists no lot on one of
-them, that side is there, but empty.
+The lots tell the order of the sides. A cutting street ends on the same two streets in
+both its rings: where a ring lists no lot on one of them, that side is there, but empty;
+so is the side that must be between two parallel streets. How lots stand along a side is
+told in `along`.
 """
 
 import itertools
-from bisect import bisect_left, bisect_right, insort
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 
-import numpy as np
+from nostalgin_core.catalogue.believed import UNKNOWN
+from nostalgin_core.catalogue.spots import Spot, family, folded
 
-from nostalgin_core.catalogue.directions import Law
-from nostalgin_core.catalogue.spots import Spot, folded
+Side = list[Spot]
 
 
-def sides_of(ring: Sequence[Spot]) -> list[list[Spot]]:
+def sides_of(ring: Sequence[Spot]) -> list[Side]:
     """Gather a ring's lots by street, in the order in which the lots reach them.
 
-    The order is that of the circular means of the lots' places, so that a street that
-    has both the first and the last lots comes out once.
+    A street is reached in the middle of its longest unbroken stretch, counted round
+    the ring, so that a lot astray moves none. Lots that were split from others do not
+    count, where there are others.
     """
     groups: dict[str, list[int]] = defaultdict(list)
     for place, spot in enumerate(ring):
         groups[folded(spot.street)].append(place)
-    angles = {
-        street: float(
-            np.angle(np.exp(2j * np.pi * np.array(places) / len(ring)).sum())
-            % (2 * np.pi - 1e-9)
-        )
-        for street, places in groups.items()
-    }
+    middles = {}
+    for street, places in groups.items():
+        own = [place for place in places if not ring[place].split] or places
+        stretch = _longest_stretch(own, ring)
+        middles[street] = stretch % len(ring)
     return [
         [ring[place] for place in groups[s]]
-        for s in sorted(groups, key=angles.__getitem__)
+        for s in sorted(groups, key=lambda s: (middles[s], s))
     ]
 
 
-def with_empty_sides(rings: Sequence[list[list[Spot]]]) -> list[list[list[Spot]]]:
+def _longest_stretch(places: Sequence[int], ring: Sequence[Spot]) -> float:
+    """Find the middle of the longest stretch of places that no other street breaks."""
+    count = len(ring)
+    street = folded(ring[places[0]].street)
+    stretches = [[places[0]]]
+    for a, b in itertools.pairwise(places):
+        between = ring[a + 1 : b]
+        if any(folded(s.street) != street and not s.split for s in between):
+            stretches.append([])
+        stretches[-1].append(b)
+    wraps = len(stretches) > 1 and all(
+        folded(s.street) == street or s.split
+        for s in [*ring[places[-1] + 1 :], *ring[: places[0]]]
+    )
+    if wraps:
+        first = stretches.pop(0)
+        stretches[-1] += [place + count for place in first]
+    # where the lots begin they often run against the rest: of two, the later
+    longest = max(reversed(stretches), key=len)
+    return (longest[0] + longest[-1]) / 2
+
+
+def with_empty_sides(rings: Sequence[list[Side]]) -> list[list[Side]]:
     """Add the sides that a ring must have though no lot of it is listed there."""
     whole = [list(ring) for ring in rings]
-    for index, ring in enumerate(whole):
-        for other in rings:
-            if other is rings[index] or len(other) < 3 or len(ring) >= 4:
+    for ring in whole:
+        _between_parallels(ring)
+    for ring in whole:
+        for other in [list(one) for one in whole if one is not ring]:
+            if len(other) < 3 or len(ring) >= 4:
                 continue
             for side in list(ring):
                 _complete(ring, side, other)
     return whole
 
 
-def _complete(
-    ring: list[list[Spot]], side: list[Spot], other: list[list[Spot]]
-) -> None:
+def _between_parallels(ring: list[Side]) -> None:
+    """Put an empty side between two parallel streets that would meet."""
+    if len(ring) != 3 or not all(ring):
+        return
+    for place, side in enumerate(ring):
+        after = ring[(place + 1) % 3]
+        here, there = side[0].street, after[0].street
+        if here != there and family(here) and family(here) == family(there):
+            ring.insert(place + 1, [])
+            return
+
+
+def _complete(ring: list[Side], side: Side, other: Sequence[Side]) -> None:
     """Put an empty side beside a cutting street, where the other ring has a street."""
     if not side or not _cut_between(side, other):
         return
@@ -62,99 +94,38 @@ def _complete(
     before, after = streets[(here + 1) % len(other)], streets[here - 1]
     own = {folded(one[0].street) for one in ring if one}
     place = ring.index(side)
+    if folded(UNKNOWN) in own:
+        return
     if after not in own and len(ring) < 4:
         ring.insert(place + 1, [])
     if before not in own and len(ring) < 4:
         ring.insert(place, [])
 
 
-def _cut_between(side: Sequence[Spot], other: Sequence[Sequence[Spot]]) -> bool:
+def _cut_between(side: Sequence[Spot], other: Sequence[Side]) -> bool:
     return any(
         one
         and folded(one[0].street) == folded(side[0].street)
-        and {spot.parity for spot in one}.isdisjoint({spot.parity for spot in side})
+        and {usual(one), usual(side)} == {0, 1}
         for one in other
     )
 
 
-def side_facts(ring: Sequence[Sequence[Spot]]) -> list[tuple[str, int, float] | None]:
-    """Tell each side's street, parity (1 odd, -1 even), and how lots order its numbers.
+def usual(side: Sequence[Spot]) -> int | None:
+    """Tell the parity that most house numbers of a side have."""
+    parities = [spot.parity for spot in side if spot.parity is not None]
+    if not parities:
+        return None
+    return int(2 * sum(parities) >= len(parities))
 
-    The last is the number of pairs in which lot and house number rise together, less
-    those in which one falls.
+
+def unwrapped(side: Sequence[Spot], places: Mapping[tuple[float, str], int]) -> Side:
+    """Begin a side after its widest stretch of other lots, round the ring.
+
+    `places` counts the lots of the ring. So a side that has the first lots and the last
+    comes out in one piece.
     """
-    lots = sorted({(spot.key, spot.lot) for side in ring for spot in side})
-    place = {lot: index for index, lot in enumerate(lots)}
-    turn = len(lots)
-    facts: list[tuple[str, int, float] | None] = []
-    for side in ring:
-        known = [one for one in side if one.number is not None]
-        if not known:
-            facts.append(None)
-            continue
-        places = np.array([place[one.key, one.lot] for one in side])
-        mean = np.angle(np.exp(2j * np.pi * places / turn).sum()) / (2 * np.pi) * turn
-        start = float(mean) - turn / 2
-        keys = [(place[one.key, one.lot] - start) % turn for one in known]
-        numbers = [one.number or 0.0 for one in known]
-        parity = 1 if known[0].parity else -1
-        facts.append((folded(side[0].street), parity, _agreement(keys, numbers)))
-    return facts
-
-
-def _agreement(a: Sequence[float], b: Sequence[float]) -> float:
-    """Count pairs in the same order, less pairs in the opposite one.
-
-    Each is compared with those of lesser `a`, which are kept in order: all pairs in a
-    matrix would take 3 GiB for 20,000 lots.
-    """
-    lesser: list[float] = []
-    total = 0
-    for _, pairs in itertools.groupby(
-        sorted(zip(a, b, strict=True)), lambda one: one[0]
-    ):
-        new = [y for _, y in pairs]
-        for y in new:
-            below, above = bisect_left(lesser, y), len(lesser) - bisect_right(lesser, y)
-            total += below - above
-        for y in new:
-            insort(lesser, y)
-    return float(total)
-
-
-def in_order(side: Sequence[Spot], law: Law) -> list[Spot]:
-    """Order one side anticlockwise: by house number, by lot where there is none."""
-    if not any(spot.number is not None for spot in side):
-        return sorted(side, key=lambda spot: spot.key)
-    parity = next(1 if one.parity else -1 for one in side if one.number is not None)
-    rising = law.get(folded(side[0].street), 1) * parity
-    known = [one for one in side if one.number is not None]
-
-    def place(spot: Spot) -> tuple[float, float]:
-        if spot.number is not None:
-            return (rising * spot.number, 0.0)
-        before = [one for one in known if one.key < spot.key]
-        if before:
-            near = max(before, key=lambda one: one.key)
-            return (rising * (near.number or 0.0), 1.0 + spot.key)
-        near = min(known, key=lambda one: one.key)
-        return (rising * (near.number or 0.0), spot.key - 1e6)
-
-    return sorted(side, key=place)
-
-
-def disorder(side: Sequence[Spot], first: float) -> Iterable[str]:
-    """Name the neighbours whose lots run against the rest of their side.
-
-    Where the ring's last lot meets its `first`, they always do.
-    """
-    keys = [spot.key for spot in side]
-    falling = _agreement(keys, [float(place) for place in range(len(side))]) < 0
-    for a, b in itertools.pairwise(side):
-        against = (a.key < b.key) if falling else (a.key > b.key)
-        known = a.number is not None and b.number is not None
-        if against and known and len(side) > 2 and first not in (a.key, b.key):
-            yield (
-                f"block {a.block}, {a.street}: lots {a.lot} ({a.address}) and {b.lot} "
-                f"({b.address}) stand by house number, against the order of lots"
-            )
+    own = [places[spot.key, spot.lot] for spot in side]
+    gaps = [b - a for a, b in zip(own, [*own[1:], own[0] + len(places)], strict=True)]
+    last = max(range(len(own)), key=lambda i: (gaps[i], i))
+    return [*side[last + 1 :], *side[: last + 1]]

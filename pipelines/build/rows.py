@@ -100,6 +100,7 @@ def block_rows(done: Modelled) -> Rows:
             "low_m": list(done.low_m),
             "high_m": list(done.high_m),
             "outlines_m": [outline.ravel().tolist() for outline in built.outline_m],
+            "closures_m": list(built.closure_m),
             "buildings": len(built.buildings),
             "assumed": sum(building.assumed for building in built.buildings),
             "credit": done.placed.task.credit,

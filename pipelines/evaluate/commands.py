@@ -177,3 +177,19 @@ def inpainting_command(
             most=most,
         )
     tell(report, inpainting.text(report), as_json=as_json)
+
+
+@app.command("slips")
+def slips_command(
+    listed: Annotated[Path, typer.Argument(help="An archive's list, as index reads.")],
+    *,
+    blocks: Annotated[str, typer.Option(help="Some of its blocks, by commas.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Measure how far one slip of a list reaches: every kind, in every row."""
+    with measuring():
+        from pipelines.evaluate import slips
+
+        wanted = [name.strip() for name in blocks.split(",") if name.strip()]
+        report = slips.evaluate(listed, blocks=wanted)
+    tell(report, slips.text(report), as_json=as_json)

@@ -57,6 +57,7 @@ BLOCKS: Final = columns(
     low_m=NUMBERS,
     high_m=NUMBERS,
     outlines_m=pa.list_(NUMBERS),
+    closures_m=NUMBERS,  # by how much each ring, as measured, missed its start
     buildings=COUNT,
     assumed=COUNT,
     credit=TEXT,

@@ -129,3 +129,19 @@ def test_two_sure_targets_make_a_corner_building() -> None:
     assert not assign.two_fronted(FRONTS, candidates, [LEFT])
     unsure = replace(RIGHT, target_score=0.2)
     assert not assign.two_fronted(FRONTS, candidates, [LEFT, unsure])
+
+
+def test_a_party_wall_makes_no_corner_building() -> None:
+    candidates = {"p": ["9-b-0"]}
+    known = [
+        replace(one, width_m=8.0, depth_m=24.0, width_assumed=False)
+        for one in FRONTS
+        if one.front_id == "9-b-0"
+    ]
+    right = replace(RIGHT, aspect=3.0 * LEFT.aspect)
+    assert assign.two_fronted(known, candidates, [LEFT, right]) == {"9-b"}
+    wall = replace(RIGHT, aspect=LEFT.aspect)
+    assert not assign.two_fronted(known, candidates, [LEFT, wall])
+    unlisted = [replace(one, depth_m=None) for one in known]
+    behind = replace(RIGHT, target_score=0.45)  # the board is before the other one
+    assert not assign.two_fronted(unlisted, candidates, [LEFT, behind])

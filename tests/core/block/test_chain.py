@@ -273,7 +273,8 @@ def test_a_lot_on_opposite_streets_is_two_buildings_of_different_names() -> None
     ]
     ring = chain(through)
     names = [one.building_id for one in ring.footprints]
-    assert len(names) == len(set(names)) == 8
+    assert len(names) == len(set(names))
+    assert len([name for name in names if "-gap-" not in name]) == 8
     assert {"9-t", "9-t-2"} <= set(names)
     stood = {name for one in ring.footprints for name in one.front_ids if name}
     assert stood == {one.front_id for one in through}

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -50,3 +52,19 @@ def test_the_order_of_what_was_seen_changes_nothing(settled: Settled) -> None:
         np.testing.assert_array_equal(a.footprint_m, b.footprint_m)
         assert (a.building_id, a.height_m) == (b.building_id, b.height_m)
         assert [w.texture for w in a.walls] == [w.texture for w in b.walls]
+
+
+def test_the_photograph_of_a_neighbour_moves_no_lot_but_its_own() -> None:
+    fronts = named_once()
+    sound = settle("1", fronts, candidates(fronts), sample.seen()).fronts
+    for lot in dict.fromkeys(front.lot for front in fronts):
+        lots = [front.lot for front in fronts]
+        other = lots[(lots.index(lot) + 1) % len(lots)]
+        shown = [one for one in sample.seen() if one.photo == f"photo-1-{other}"]
+        rest = [one for one in sample.seen() if one.photo != f"photo-1-{lot}"]
+        slipped = [replace(one, photo=f"photo-1-{lot}") for one in shown]
+        found = settle("1", fronts, candidates(fronts), [*rest, *slipped]).fronts
+        own = {lot, other}
+        before = [(f.front_id, f.side) for f in sound if f.lot not in own]
+        after = [(f.front_id, f.side) for f in found if f.lot not in own]
+        assert before == after

@@ -1,4 +1,5 @@
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -117,7 +118,7 @@ def test_opposite_sides_settle_a_street_that_too_few_lots_speak_for() -> None:
     assert directions([ring])[0] == {"a": -1, "east": 1, "b": -1, "west": -1}
 
 
-def test_house_numbers_that_run_against_the_lots_are_named() -> None:
+def test_a_number_that_runs_against_the_lots_is_named_and_set_aside() -> None:
     swapped = entries(
         ("1", "Elm", "101"),
         ("2", "Elm", "109"),
@@ -125,8 +126,9 @@ def test_house_numbers_that_run_against_the_lots_are_named() -> None:
         ("4", "Elm", "113"),
     )
     fronts, warnings = rings.fronts(swapped)
-    assert walk(fronts) == ["1", "3", "2", "4"]
-    assert "lots 3 (105) and 2 (109)" in warnings[0]
+    assert walk(fronts) == ["1", "2", "3", "4"]
+    assert "lot 2 (109 Elm)" in warnings[0]
+    assert "lot 3 (105 Elm)" in warnings[1]
 
 
 def test_sides_that_a_catalogue_gives_are_taken() -> None:
@@ -202,3 +204,71 @@ def test_strange_catalogues_make_fronts_of_different_names_and_blocks_that_stand
         built = block.block("9", fronts, [], {})
         stood = [w.front_id for one in built.buildings for w in one.walls if w.front_id]
         assert sorted(stood) == sorted(ids)
+
+
+def test_one_lot_is_a_block() -> None:
+    (only,), told = rings.fronts(entries(("7", "West 10 Street", "139")))
+    assert (only.lot, only.ring, only.side, only.rank) == ("7", 0, 0, 0)
+    assert not told
+    assert len(block.block("9", [only], [], {}).buildings) == 1
+
+
+def test_a_thousand_lots_without_a_width_stand_in_order() -> None:
+    streets = ("West 1 Street", "1 Avenue", "West 2 Street", "2 Avenue")
+    first = (2001, 1, 1000, 4001)
+    step = (-2, 2, 2, -2)
+    rows = [
+        (str(250 * k + i + 1), street, str(first[k] + step[k] * i))
+        for k, street in enumerate(streets)
+        for i in range(250)
+    ]
+    fronts, told = rings.fronts(entries(*rows))
+    assert walk(fronts) == [lot for lot, *_ in rows]
+    assert not told
+    assert all(one.width_assumed for one in fronts)
+
+
+def test_a_lot_on_no_street_stands_by_its_number_and_its_neighbours() -> None:
+    bare = [*PLAIN[:1], replace(PLAIN[1], street=""), *PLAIN[2:]]
+    fronts, told = rings.fronts(bare)
+    assert walk(fronts) == walk(rings.fronts(PLAIN)[0])
+    assert fronts[1].street == "West 10 Street"
+    assert "lot 2 (137): it names no street" in told[0]
+
+
+def test_two_lots_with_one_key_are_both_kept_and_told() -> None:
+    twice = entries(("3", "West 10 Street", "131-135"), ("3", "West 10 Street", "129"))
+    twice = [replace(one, row=90 + k) for k, one in enumerate(twice)]
+    rows = [one for one in PLAIN if one.lot != "3"]
+    fronts, told = rings.fronts([*rows, *twice])
+    assert walk(fronts) == walk(rings.fronts(PLAIN)[0])
+    assert "row 90 says 131-135 West 10 Street, row 91 says 129" in told[0]
+
+
+def test_letters_and_halves_stand_between_whole_numbers() -> None:
+    rows = [
+        ("1", "Elm", "31"),
+        ("2", "Elm", "33"),
+        ("2A", "Elm", "33 1/2"),
+        ("3", "Elm", "35"),
+        ("4", "Elm", "37½"),
+        ("5", "Elm", "39-43"),
+    ]
+    fronts, told = rings.fronts(entries(*rows))
+    assert walk(fronts) == ["1", "2", "2A", "3", "4", "5"]
+    assert not told
+
+
+def test_a_single_lot_can_be_an_island() -> None:
+    alone = [one for one in CUT if one.lot not in {"1", "2", "3", "4", "7", "20"}]
+    fronts, told = rings.fronts(alone)
+    assert walk(fronts, 0) == ["6"]
+    assert sorted(walk(fronts, 1)) == sorted(o.lot for o in alone if o.lot != "6")
+    assert "lot 6 (1431 Broadway): it has a ring to itself" in told[0]
+
+
+def test_a_number_of_the_other_parity_makes_no_island() -> None:
+    slipped = [replace(one, address="136") if one.lot == "2" else one for one in PLAIN]
+    fronts, told = rings.fronts(slipped)
+    assert walk(fronts) == walk(rings.fronts(PLAIN)[0])
+    assert "the other numbers of its side are odd" in told[0]

@@ -1,0 +1,56 @@
+"""Rows that say twice the same, or otherwise than the name of their own photograph."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from nostalgin_core.address import house_numbers
+from nostalgin_core.catalogue.entry import Entry, from_file_name
+
+WIDEST: Final = 60  # numbers of one lot: thirty doors
+
+
+def contradictions(rows: Sequence[Entry]) -> Iterator[str]:
+    """Name the rows of one block that were written twice, or for another lot's photo.
+
+    A photo's name tells its lot only in an archive that names its files so.
+    """
+    yield from _odd_ranges(rows)
+    seen: dict[tuple[str, ...], int] = {}
+    for row in rows:
+        says = (row.photo, row.lot, row.street, row.address)
+        first = seen.setdefault(says, row.row)
+        if first != row.row:
+            yield (
+                f"block {row.block}, lot {row.lot}: row {first} and row {row.row} say "
+                "the same; delete one of them"
+            )
+        named = from_file_name(row.photo)
+        if named is not None and named != (row.block, row.lot):
+            yield (
+                f"block {row.block}, lot {row.lot}: row {row.row} names {row.photo}, "
+                f"by its name a photo of block {named[0]}, lot {named[1]}; mend the "
+                "lot or the photo"
+            )
+
+
+def _odd_ranges(rows: Sequence[Entry]) -> Iterator[str]:
+    """Name the house numbers that fall, pass to the other side, or run too far."""
+    told: set[tuple[str, str]] = set()
+    for row in rows:
+        ends = house_numbers(row.address)
+        if ends is None or ends[0] == ends[1] or (row.lot, row.address) in told:
+            continue
+        why = ""
+        if not re.match(rf"\D*{ends[0]}(?!\d)", row.address):
+            why = "falls"
+        elif (ends[1] - ends[0]) % 2:
+            why = "has an odd end and an even one"
+        elif ends[1] - ends[0] > WIDEST:
+            why = "is too wide for one lot"
+        if why:
+            told.add((row.lot, row.address))
+            yield (
+                f"block {row.block}, lot {row.lot}: row {row.row} says {row.address}, "
+                f"a range that {why}; mend the number"
+            )

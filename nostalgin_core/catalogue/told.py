@@ -1,0 +1,96 @@
+"""What is told of lots that are set aside: why, and the likeliest corrections.
+
+They are another street of the block where the number has its gap, and another number on
+the lot's own street: the one that lies between its neighbours' and is most easily
+mistaken for what is written.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+from nostalgin_core.catalogue.along import Along
+from nostalgin_core.catalogue.faces import WITNESSES, Faces
+from nostalgin_core.catalogue.spots import Spot, folded, numbers_of
+
+REACH: Final = 20  # numbers beyond the last lot of a side
+MOST: Final = 3  # streets
+
+
+def told(
+    doubts: Iterable[tuple[Spot, str]], sides: Sequence[Along], known: Faces
+) -> list[str]:
+    """Write a line for each doubtful lot, its reasons joined, in the order of lots."""
+    reasons: dict[tuple[str, str], tuple[Spot, list[str]]] = {}
+    for spot, why in doubts:
+        reasons.setdefault((spot.lot, spot.listed), (spot, []))[1].append(why)
+    where = {one.lot: (side, i) for side in sides for i, one in enumerate(side.spots)}
+    lines = []
+    for spot, why in sorted(reasons.values(), key=lambda one: (one[0].key, one[0].lot)):
+        likely = _likely(spot, where.get(spot.lot), known)
+        remedy = f"; likeliest {' or '.join(likely)}" if likely else "; mend its row"
+        some = "; ".join(dict.fromkeys(why))
+        lines.append(f"block {spot.block}, {spot.told()}: {some}{remedy}")
+    return lines
+
+
+def _likely(spot: Spot, where: tuple[Along, int] | None, known: Faces) -> list[str]:
+    """List the likeliest corrections of a lot's address."""
+    likely = []
+    numbers = numbers_of(spot.address)
+    if numbers:
+        streets = [
+            street
+            for street in known.frequent
+            if folded(street) != folded(spot.listed)
+            and known.fits(street, numbers, -1)
+            and known.near(street, numbers, -1) == WITNESSES
+        ]
+        likely += [f"{spot.address} {street}" for street in streets[:MOST]]
+    if where is not None:
+        side, place = where
+        street = side.spots[place].street
+        number = _between(spot, side, place, known)
+        if number and street:
+            likely.append(f"{number} {street}")
+    return likely
+
+
+def _between(spot: Spot, side: Along, place: int, known: Faces) -> str:
+    """Find the number between a lot's neighbours that is nearest to what is written."""
+    run = side.run(1)
+    out = {side.steady[i] for i in run.out}
+    sure = [i for i in side.steady if i not in out and i != place]
+    before = [side.spots[i] for i in sure if i < place][-1:]
+    after = [side.spots[i] for i in sure if i > place][:1]
+    ends = sorted(one.number or 0.0 for one in (*before, *after))
+    if not ends:
+        return ""
+    low, high = int(ends[0]), int(ends[-1])
+    if len(ends) == 1:
+        rising = run.direction * (1 if before else -1)
+        low, high = (low, low + REACH) if rising >= 0 else (max(low - REACH, 0), low)
+    street = side.spots[place].street
+    vacant = [
+        number
+        for number in range(low + 1, high)
+        if number % 2 == (side.parity if side.parity is not None else number % 2)
+        and not known.taken(street, (float(number), float(number)), -1)
+    ]
+    if not vacant:
+        return ""
+    written = "".join(c for c in spot.address.split("-")[0] if c.isdecimal())
+    return str(min(vacant, key=lambda one: (_mistaken(written, str(one)), one)))
+
+
+def _mistaken(a: str, b: str) -> int:
+    """Count the digits by which two numbers differ; two that are swapped count one."""
+    if len(a) != len(b):
+        return 9
+    differing = [i for i in range(len(a)) if a[i] != b[i]]
+    if (
+        len(differing) == 2
+        and sorted(a) == sorted(b)
+        and differing[1] - differing[0] == 1
+    ):
+        return 1
+    return len(differing)
