@@ -62,6 +62,7 @@ UNUSED: Final = frozenset(  # the archive's columns that say nothing about place
     }
 )
 FIRST_ROW: Final = 2
+QUOTED: Final = 80  # letters
 LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
 
 
@@ -85,7 +86,7 @@ def read(
     listed = [{key: cell for key, cell in row.items() if key} for row in given]
     columns = _columns(listed)
     warnings = [
-        f"{name}: column {column!r} is not known; it is kept"
+        f"{name}: column {_shown(column)} is not known; it is kept"
         for column in dict.fromkeys(key for row in listed for key in row)
         if column not in columns.values() and _plain(column) not in UNUSED
     ]
@@ -170,7 +171,7 @@ def _check_width(row: Mapping[Any, Any]) -> None:
     if any(surplus):
         beyond = ", ".join(surplus)[:80]
         raise ValueError(
-            f"too many cells: {beyond!r} stands beyond the last column; put texts that "
+            f"too many cells: {_shown(beyond)} stands beyond the last column; put texts that "
             "hold commas in quotes"
         )
 
@@ -184,9 +185,15 @@ def _check_lengths(row: Mapping[str, str | None]) -> None:
     for column, cell in row.items():
         if cell and len(cell) > LONGEST_CELL:
             raise ValueError(
-                f"cell too long: {column!r} has {len(cell):,} letters, more than "
+                f"cell too long: {_shown(column)} has {len(cell):,} letters, more than "
                 f"{LONGEST_CELL:,}; shorten it, or look for a quote that is not closed"
             )
+
+
+def _shown(words: object) -> str:
+    """Quote the beginning of what may be endless."""
+    text = str(words)
+    return repr(text if len(text) <= QUOTED else f"{text[:QUOTED]}...")
 
 
 def _plain(column: object) -> str:

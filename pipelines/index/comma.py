@@ -20,7 +20,6 @@ NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 MOST_CELL: Final = 2**31 - 1  # letters; what is too long is named by its row later
 MOST_LINE: Final = 20_000_000  # letters
 MOST_ROWS: Final = 5_000_000
-MOST_NAME: Final = 1_000  # letters, of a column
 OTHERS: Final = re.compile(r"[;\t|]")  # what parts cells in other dialects
 
 Cells = dict[Any, Any]  # by column; what stands beyond the last one, under None
@@ -59,9 +58,6 @@ def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], list[Cells]]:
     rows = [by_column(names, row) for row in below]
     if len(names) == 1 and (mark := OTHERS.search(names[0])):
         raise NoTable(f"parts its cells by {mark[0]!r}: save it with commas")
-    longest = max(map(len, names), default=0)
-    if longest > MOST_NAME:
-        raise NoTable(f"names a column in {longest:,} letters: mend its first row")
     twice = [name for name, count in Counter(names).items() if name and count > 1]
     if twice:
         raise NoTable(f"has two columns {twice[0]!r}: rename or delete one of them")

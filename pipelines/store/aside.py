@@ -29,8 +29,7 @@ class Aside:
     def of(self, stage: str, element: Any) -> Rejection | None:
         """Tell why an element was put aside, if it was."""
         if self._known is None:
-            names = () if self.retry else self.store.names(self._folder())
-            self._known = frozenset(names)
+            self._known = frozenset(() if self.retry else self._names())
         name = f"{self._key(stage, element)}.parquet"
         if name not in self._known:
             return None
@@ -41,6 +40,12 @@ class Aside:
         """Remember an element."""
         name = f"{self._key(stage, element)}.parquet"
         self.store.keep(f"{self._folder()}/{name}", why)
+
+    def _names(self) -> list[str]:
+        try:
+            return self.store.names(self._folder())
+        except OSError:  # where nothing can be kept, the stage itself will tell
+            return []
 
     def _folder(self) -> str:
         return f"{ARTIFACTS}/aside/{key_of(json.dumps(vars(self.versions)))[:16]}"

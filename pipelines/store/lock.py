@@ -37,6 +37,7 @@ def held(store: Store, *, shared: bool = False) -> Iterator[None]:
     if "://" in store.root:
         yield
         return
+    store.exists(LOCK)  # a folder that can have no name is told before it is made
     path = Path(store.root) / LOCK
     path.parent.mkdir(parents=True, exist_ok=True)
     file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
