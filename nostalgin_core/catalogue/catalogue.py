@@ -169,10 +169,10 @@ def _check_width(row: Mapping[Any, Any]) -> None:
     """
     surplus = [_text(cell) for cell in row.get(None) or ()]
     if any(surplus):
-        beyond = ", ".join(surplus)[:80]
+        beyond = ", ".join(surplus)
         raise ValueError(
-            f"too many cells: {_shown(beyond)} stands beyond the last column; put texts that "
-            "hold commas in quotes"
+            f"too many cells: {_shown(beyond)} stands beyond the last column; put "
+            "texts that hold commas in quotes"
         )
 
 

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection, Pipe
+from pathlib import Path
 from typing import Any, Final
 
 from nostalgin_core.records import Rejection
@@ -58,7 +59,7 @@ class Supervisor:
         Raises:
             EOFError: if the supervisor itself was killed.
         """
-        request = pickle.dumps((function, pickle.dumps(element)))
+        request = pickle.dumps((function, pickle.dumps(element), here()))
         self._connection.send_bytes(pickle.dumps((tuple(limits), request)))
         return pickle.loads(self._connection.recv_bytes())  # noqa: S301 - our own
 
@@ -66,6 +67,14 @@ class Supervisor:
         """Let it go, and wait until it is gone."""
         self._connection.close()
         self._wait()
+
+
+def here() -> str:
+    """Name the folder that relative paths begin in; none if it is no more."""
+    try:
+        return str(Path.cwd())
+    except FileNotFoundError:
+        return ""
 
 
 def forked(its: Connection) -> Callable[[], object]:
@@ -83,8 +92,10 @@ def forked(its: Connection) -> Callable[[], object]:
 
 def started(its: Connection) -> Callable[[], object]:
     """Start a supervisor from the beginning."""
+    paths = [path or here() for path in sys.path]  # it may have begun in another folder
     start = f"import {supervisor.__name__} as one; one.main()"  # under its own name
-    command = [sys.executable, "-c", start, str(its.fileno())]
+    known = f"import sys; sys.path[:] = {paths!r}; {start}"
+    command = [sys.executable, "-c", known, str(its.fileno())]
     return subprocess.Popen(command, pass_fds=[its.fileno()]).wait
 
 

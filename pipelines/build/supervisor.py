@@ -150,7 +150,10 @@ def work(supervisor: Connection, limits: Limits) -> NoReturn:
     functions: dict[bytes, Function] = {}  # with the networks that they have loaded
     try:
         while True:
-            function, element = pickle.loads(supervisor.recv_bytes())  # noqa: S301
+            request = pickle.loads(supervisor.recv_bytes())  # noqa: S301 - our own
+            function, element, folder = request
+            with contextlib.suppress(OSError):
+                os.chdir(folder)  # it may have been forked in another
             if function not in functions:
                 functions[function] = pickle.loads(function)  # noqa: S301 - our own
             answer = done(functions[function], pickle.loads(element), limits)  # noqa: S301

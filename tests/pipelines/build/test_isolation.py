@@ -180,3 +180,17 @@ def alive(process: int) -> bool:
     except FileNotFoundError:
         return False
     return state != "Z"
+
+
+def folder(_: object) -> str:
+    return str(Path.cwd())
+
+
+def test_relative_paths_begin_where_they_do_for_the_worker(
+    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    act = pickle.dumps(folder)
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        monkeypatch.chdir(tmp_path / name)
+        assert done(isolation(store), name, act) == str(tmp_path / name)
