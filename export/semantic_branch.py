@@ -29,6 +29,23 @@ RARE: Final = 4.0  # how much more an end weighs than what is none
 TRIAL: Final = {"a.": "levels.", "b.": "middle.", "c.": "top."}  # the first trial's
 
 
+class GroupNorm(nn.Module):
+    """Group normalisation (Wu and He, ECCV 2018) whose weights an ONNX file can name.
+
+    They have the shape that they are used in, so that no exporter folds them away.
+    """
+
+    def __init__(self, channels: int) -> None:
+        """Begin by changing nothing after normalising."""
+        super().__init__()
+        self.weight = nn.Parameter(torch.ones(channels, 1, 1))
+        self.bias = nn.Parameter(torch.zeros(channels, 1, 1))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Normalise each group of channels of each photo, then scale and shift."""
+        return functional.group_norm(x, GROUPS) * self.weight + self.bias
+
+
 class SemanticBranch(nn.Module):
     """The branch: four logits a cell of 4 x 4 pixels."""
 
@@ -75,21 +92,21 @@ def from_trial(weights: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Rename the first trial's weights; what it had not is left as a branch begins."""
     named = {k: v.numpy() for k, v in SemanticBranch().state_dict().items()}
     for name, array in weights.items():
-        named[TRIAL[name[:2]] + name[2:]] = array
+        renamed = TRIAL[name[:2]] + name[2:]
+        named[renamed] = array.reshape(named[renamed].shape)
     return named
 
 
 def _layer(channels: int) -> nn.Sequential:
     return nn.Sequential(
-        nn.Conv2d(channels, WIDTH, 3, padding=1), nn.GroupNorm(GROUPS, WIDTH), nn.ReLU()
+        nn.Conv2d(channels, WIDTH, 3, padding=1), GroupNorm(WIDTH), nn.ReLU()
     )
 
 
 def _silent(channels: int) -> nn.Sequential:
-    last = nn.Conv2d(channels, WIDTH, 1)
+    last = nn.Conv2d(channels, WIDTH, 1, bias=False)
     nn.init.zeros_(last.weight)
-    nn.init.zeros_(last.bias)  # pyright: ignore[reportArgumentType] (it has one)
-    return nn.Sequential(nn.GroupNorm(GROUPS, channels), last)
+    return nn.Sequential(GroupNorm(channels), last)
 
 
 def _resized(x: Tensor, like: Tensor) -> Tensor:

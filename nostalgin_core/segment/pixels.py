@@ -7,12 +7,11 @@ Distributions", Statistical Science 1986, section 3):
 
     odds = mask odds ^ (1 - w) * pixel odds ^ w * prior
 
-The weights are a logistic regression's on block 993, rounded; on the streets that are
-kept out of training it gives the same for what hides, and more to the pixels for
-fronts. What hides is missed more often than made up, so that its prior is above 1.
-Where several things claim a pixel, they share what was pooled as they shared
-what they had. What pixels alone see in front of fronts becomes a thing of the class
-other.
+The weights began as a logistic regression's on block 993, which gives the same for what
+hides on streets kept out of training, and there more to the pixels for fronts. What
+hides is missed more often than made up, so that its prior is above 1. Where several
+things claim a pixel, they share what was pooled as they shared what they had. What
+pixels alone see in front of fronts becomes a thing of the class other.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,9 +26,9 @@ from nostalgin_core.records import Box, Instance
 
 STRIDE_PX: Final = 4  # of the network's input, a pixel's answer
 PLANES: Final = 4  # ground, front, what hides it, an end of a front
-FRONT_WEIGHT: Final = 0.5
+FRONT_WEIGHT: Final = 0.65
 HIDING_WEIGHT: Final = 0.75
-HIDING_PRIOR: Final = 1.5
+HIDING_PRIOR: Final = 2.0
 DOUBT: Final = 0.02  # no witness is surer than this less than 1
 LEAST: Final = 1e-3  # of a claim; below it, nothing is shared
 SMALLEST: Final = 0.0003  # of the frame: 140 px in 560 x 840

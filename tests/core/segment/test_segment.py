@@ -55,7 +55,7 @@ def test_boxes_return_to_the_photo_whatever_size_the_network_saw() -> None:
         (found,) = segment(_photo(), network, short_px=short_px)
         assert found.box == Box(75, 200, 225, 400)
         assert found.probability.shape == (200, 150)
-        assert found.probability.min() > 0.8
+        assert found.probability.min() > 0.7
 
 
 def test_a_network_that_says_nothing_of_pixels_is_refused() -> None:
