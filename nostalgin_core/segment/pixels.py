@@ -3,7 +3,7 @@
 A mask comes out of one look at a box; the network's semantic branch looks at every
 pixel, and knows nothing of things. Each is a witness, whose odds count to the power of
 its weight, as in a logarithmic opinion pool (Genest and Zidek, "Combining Probability
-Distributions", Statistical Science 1986, section 3):
+Distributions", Statistical Science 1986):
 
     odds = mask odds ^ (1 - w) * pixel odds ^ w * prior
 
