@@ -13,16 +13,22 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import cv2
 import numpy as np
 import torch
 
 from export.mask_rcnn import MaskRCNN, load_weights
 from export.segmentation_data import Sample, fill, read_folder
+from export.semantic_branch import KINDS, probabilities
 from export.weights import read_weights
 from nostalgin_core import segment
+from nostalgin_core.arrays import Mask
 from nostalgin_core.measure.segmentation import agreement, overlap
 from nostalgin_core.records import Box, Instance, Photo, Rejection
 from nostalgin_core.segment import Network
+from nostalgin_core.segment.segment import prepared
+
+SHORT_PX, LONG_PX = 416, 1344  # the scale in use
 
 
 def as_callable(network: MaskRCNN) -> Network:
@@ -36,12 +42,26 @@ def as_callable(network: MaskRCNN) -> Network:
     return call
 
 
+def pixels_alone(network: MaskRCNN) -> Network:
+    """Ask a torch network for its pixels alone."""
+
+    @torch.inference_mode()
+    def call(gray: np.ndarray) -> tuple[np.ndarray, ...]:
+        image = torch.from_numpy(gray).to(memory_format=torch.channels_last)
+        return (probabilities(network.pixel_logits(image))[0].numpy(),)
+
+    return call
+
+
 def together(*networks: Network) -> Network:
-    """Let several networks answer as one, as the paper's two do."""
+    """Let several networks answer as one, as the paper's two do.
+
+    Their things are put together; of what they say about pixels, the mean counts.
+    """
 
     def call(gray: np.ndarray) -> tuple[np.ndarray, ...]:
-        answers = [network(gray) for network in networks]
-        return tuple(np.concatenate(parts) for parts in zip(*answers, strict=True))
+        *things, pixels = zip(*(network(gray) for network in networks), strict=True)
+        return (*map(np.concatenate, things), np.mean(pixels, axis=0))
 
     return call
 
@@ -69,15 +89,44 @@ def found(network: Network, sample: Sample) -> tuple[Instance, ...]:
     return () if isinstance(instances, Rejection) else instances
 
 
+def pixel_figures(ask: Network, samples: Sequence[Sample]) -> dict[str, float]:
+    """Judge the semantic branch alone on labelled photos, each cell's likeliest kind.
+
+    Far rows do not count. Means over photos.
+    """
+    rows = []
+    for sample in samples:
+        shape = sample.image.shape
+        gray = prepared(sample.image, short_px=SHORT_PX, long_px=LONG_PX)
+        pixels = ask(gray[None, None])[-1]
+        full = [
+            cv2.resize(p, shape[::-1], interpolation=cv2.INTER_LINEAR) for p in pixels
+        ]
+        kind = np.argmax(full[:KINDS], axis=0)
+        every, hidden, counted = _labelled(sample)
+        seen = every & ~hidden
+        score = agreement(full[1], seen, counted, threshold=0.5)
+        on = hidden & every
+        rows.append(
+            {
+                "precision": score.precision,
+                "recall": score.recall,
+                "l1": score.l1,
+                "l2": score.l2,
+                "hard": 100 * float(((kind == 1) != seen)[counted].mean()),
+                "occluders": (kind == 2)[on].mean() if on.any() else float("nan"),
+                "occluders_false": ((kind == 2) & seen).sum() / max(1, every.sum()),
+            }
+        )
+    return {n: round(float(np.nanmean([r[n] for r in rows])), 4) for n in rows[0]}
+
+
 def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
     """Compare what was found in one photo with its labels."""
     shape = sample.image.shape
     fronts = [t for t in sample.things if t.category == "facade" and t.scored]
-    far = [t for t in sample.things if t.category == "facade" and not t.scored]
-    hidden = _union([fill(t.rings, shape) for t in sample.things if t.layer], shape)
     whole = [fill(t.rings, shape) for t in fronts]
-    every = _union(whole, shape)
-    counted = ~(_union([fill(t.rings, shape) for t in far], shape) & ~every)
+    every, hidden, counted = _labelled(sample)
     masks = [(i.category, _whole(i, shape) > 0.5) for i in instances]
     facades = [m for category, m in masks if category == "facade"]
     before = _union([m for category, m in masks if category != "facade"], shape)
@@ -100,6 +149,16 @@ def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
         "fronts": overlaps,
         "targets": [max(aims)] if aims else [],
     }
+
+
+def _labelled(sample: Sample) -> tuple[Mask, Mask, Mask]:
+    """Return all front, what hides anything, and what counts: no far row."""
+    shape = sample.image.shape
+    fronts = [t for t in sample.things if t.category == "facade"]
+    hidden = _union([fill(t.rings, shape) for t in sample.things if t.layer], shape)
+    every = _union([fill(t.rings, shape) for t in fronts if t.scored], shape)
+    far = _union([fill(t.rings, shape) for t in fronts if not t.scored], shape)
+    return every, hidden, ~(far & ~every)
 
 
 def _union(masks: Sequence[np.ndarray], shape: tuple[int, int]) -> np.ndarray:

@@ -1,7 +1,8 @@
 """A small Mask R-CNN finds fronts and what hides them in one gray photograph.
 
 He et al., "Mask R-CNN", ICCV 2017, on MobileNetV2 (Sandler et al., CVPR 2018) with a
-feature pyramid of 128 channels: 6.7 million parameters. The backbone carries no batch
+feature pyramid of 128 channels: 7.2 million parameters, with the semantic branch
+(`semantic_branch`) that tells every pixel what it is. The backbone carries no batch
 norm (it was folded into the convolutions), so that training with one photo a pass
 needs nothing special.
 
@@ -25,6 +26,7 @@ from torchvision.models.detection.rpn import RegionProposalNetwork, RPNHead
 from torchvision.ops import FeaturePyramidNetwork, MultiScaleRoIAlign
 from torchvision.ops.feature_pyramid_network import LastLevelMaxPool
 
+from export.semantic_branch import SemanticBranch, losses, probabilities
 from nostalgin_core.segment import CATEGORIES
 
 # Expansion, channels, repeats, stride: table 2 of the MobileNetV2 paper.
@@ -117,9 +119,14 @@ class Backbone(nn.Module):
         """Return five levels of `CHANNELS` channels each."""
         return self.fpn(self.body(x))
 
+    def both(self, x: Tensor) -> tuple[dict[str, Tensor], dict[str, Tensor]]:
+        """Return the body's four taps, and the five levels made of them."""
+        taps = self.body(x)
+        return taps, self.fpn(dict(taps))
+
 
 class MaskRCNN(nn.Module):
-    """Backbone, region proposals, box head and mask head in one module."""
+    """Backbone, region proposals, box head, mask head and semantic branch."""
 
     def __init__(self, *, detections: int = 40, score: float = 0.2) -> None:
         """Keep at most `detections` things, each surer than `score`.
@@ -130,23 +137,38 @@ class MaskRCNN(nn.Module):
         self.backbone = Backbone()
         self.rpn = _proposals()
         self.roi_heads = _heads(detections, score)
+        self.branch = SemanticBranch(CHANNELS)
 
     def forward(
         self, gray: Tensor, targets: list[dict[str, Tensor]] | None = None
     ) -> tuple[Tensor, ...] | dict[str, Tensor]:
-        """Return (boxes, labels, scores, masks) of one photo, or losses if training."""
+        """Return (boxes, labels, scores, masks, pixels), or losses if training."""
         height, width = gray.shape[-2:]
         images = ImageList(gray, [(height, width)] * gray.shape[0])
-        features = self.backbone(gray / 127.5 - 1)
+        taps, features = self.backbone.both(gray / 127.5 - 1)
         if self.training:  # the finest level costs a third of the backward pass
             features["0"] = features["0"].detach()
+        logits = self.branch(taps, list(features.values()))
         coarse = {level: features[level] for level in PROPOSING}
         proposals, rpn_losses = self.rpn(images, coarse, targets)
-        found, losses = self.roi_heads(features, proposals, images.image_sizes, targets)
-        if self.training:
-            return rpn_losses | losses
-        first = found[0]
-        return first["boxes"], first["labels"], first["scores"], first["masks"][:, 0]
+        found, lost = self.roi_heads(features, proposals, images.image_sizes, targets)
+        if targets is not None and self.training:
+            return rpn_losses | lost | losses(logits, targets[0]["cells"])
+        first, pixels = found[0], probabilities(logits)[0]
+        masks = first["masks"][:, 0]
+        return first["boxes"], first["labels"], first["scores"], masks, pixels
+
+    def branch_losses(
+        self, gray: Tensor, targets: list[dict[str, Tensor]]
+    ) -> dict[str, Tensor]:
+        """Return the semantic branch's losses alone, all before it held as it is."""
+        return losses(self.pixel_logits(gray), targets[0]["cells"])
+
+    def pixel_logits(self, gray: Tensor) -> Tensor:
+        """Return the semantic branch's answer alone: a fifth of the whole's work."""
+        with torch.no_grad():
+            taps, features = self.backbone.both(gray / 127.5 - 1)
+        return self.branch(taps, list(features.values()))
 
 
 def _proposals() -> RegionProposalNetwork:
@@ -201,8 +223,10 @@ def load_weights(network: MaskRCNN, weights: Mapping[str, np.ndarray]) -> MaskRC
     return network.to(memory_format=torch.channels_last)  # halves the time on a CPU
 
 
-def freeze(network: MaskRCNN) -> None:
-    """Leave the first, widest stages as they are: they need no gradient."""
+def freeze(network: MaskRCNN, *, but_branch: bool = False) -> None:
+    """Leave the first, widest stages as they are, or all but the branch."""
     body = network.backbone.body
-    for part in (body.stem, *body.blocks[:FROZEN_BLOCKS]):
+    firsts = (body.stem, *body.blocks[:FROZEN_BLOCKS])
+    rest = (network.backbone, network.rpn, network.roi_heads)
+    for part in rest if but_branch else firsts:
         part.requires_grad_(requires_grad=False)

@@ -27,7 +27,8 @@ from nostalgin_core import session
 from nostalgin_core.segment.segment import prepared
 
 OPSET = 17
-OUTPUTS = ("boxes", "labels", "scores", "masks")
+THINGS = ("boxes", "labels", "scores", "masks")
+OUTPUTS = (*THINGS, "pixels")
 TOLERANCE = 0.05  # px, and hundredths of that in scores: rounding, added up
 
 
@@ -46,7 +47,8 @@ def export(network: MaskRCNN, example: Float32[np.ndarray, "1 1 h w"]) -> bytes:
             opset_version=OPSET,
             input_names=["gray"],
             output_names=list(OUTPUTS),
-            dynamic_axes={"gray": {2: "h", 3: "w"}} | {o: {0: "n"} for o in OUTPUTS},
+            dynamic_axes={"gray": {2: "h", 3: "w"}, "pixels": {1: "rows", 2: "columns"}}
+            | {name: {0: "n"} for name in THINGS},
             do_constant_folding=False,
             dynamo=False,
         )
@@ -67,7 +69,7 @@ def rounded(network: MaskRCNN) -> MaskRCNN:
 def disparity(
     network: MaskRCNN, model: bytes, images: Sequence[Float32[np.ndarray, "1 1 h w"]]
 ) -> float:
-    """Return the largest difference of boxes (in px), scores or masks over images.
+    """Return the largest difference of boxes (in px), scores or probabilities.
 
     It is infinite where the two do not find the same number of the same things.
     """

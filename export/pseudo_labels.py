@@ -66,7 +66,7 @@ def looked_at(image: Gray, network: Network) -> list[tuple[Instance, ...]]:
     for short_px, mirrored in VIEWS:
         seen = np.ascontiguousarray(image[:, ::-1]) if mirrored else image
         photo = Photo("unlabelled", seen, frame)
-        found = everything(photo, network, least=0.2, short_px=short_px)
+        found = everything(photo, network, least=0.2, short_px=short_px).things
         answers.append(tuple(_mirror(i, width) if mirrored else i for i in found))
     return answers
 

@@ -9,7 +9,6 @@ What is kept is an exponential moving average of the weights.
 
 import argparse
 import json
-import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,52 +19,18 @@ import torch
 from torch import Tensor
 
 from export.ahead import ahead
-from export.blemishes import blemished
-from export.copy_paste import Donor, donors, paste
-from export.held_out import as_callable, figures
+from export.copy_paste import donors
+from export.held_out import as_callable, figures, pixel_figures, pixels_alone
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.painted_segmentation_data import read_painted
 from export.pseudo_labels import read_pseudo
-from export.segmentation_data import (
-    UNSCORED,
-    Sample,
-    Truth,
-    read_folder,
-    tilted,
-    truth,
-    view,
-)
-from export.wear import wear
-from export.weights import read_weights
-from nostalgin_core.arrays import Gray
-from nostalgin_core.records import Category
+from export.segmentation_data import Sample, read_folder
+from export.segmentation_samples import Schedule, Seen, drawn
+from export.semantic_branch import from_trial
+from export.weights import BRANCH, read_weights
 from nostalgin_core.segment import CATEGORIES
 
-
-@dataclass(frozen=True, slots=True)
-class Schedule:
-    """How long and how fast to learn.
-
-    The rate rises over `warm_up` steps and falls along half a cosine to a hundredth.
-    1e-4 with Adam is usual for weights that already know the task. Losses of `batch`
-    photos make one step. Gradients are clipped to norm 10 (paper, appendix).
-    """
-
-    steps: int = 2000
-    rate: float = 1e-4
-    warm_up: int = 50
-    batch: int = 2
-    clip: float = 10.0
-    decay: float = 0.995  # of the average: about the last 200 steps
-    short_px: tuple[int, int] = (352, 544)  # between which a photo's short side falls
-    seed: int = 0
-    answering: tuple[Category, ...] = CATEGORIES  # the paper's two networks share these
-
-    def rate_at(self, step: int) -> float:
-        """Return the learning rate of a step."""
-        rise = min(1.0, (step + 1) / self.warm_up)
-        fall = 0.5 * (1 + math.cos(math.pi * min(1.0, step / self.steps)))
-        return self.rate * rise * (0.01 + 0.99 * fall)
+SETS = ("taxphotos", "historic_streets")
 
 
 @dataclass(slots=True)
@@ -83,31 +48,13 @@ class Run:
         return next(self.network.parameters()).device
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Seen:
-    """One photo as the network is shown it, and what it should answer."""
-
-    image: Gray
-    answer: Truth
-
-    def tensors(self, device: torch.device) -> tuple[Tensor, list[dict[str, Tensor]]]:
-        """Give both to torch."""
-        gray = torch.from_numpy(self.image.astype(np.float32))[None, None]
-        target = {
-            "boxes": torch.from_numpy(self.answer.boxes).to(device),
-            "labels": torch.from_numpy(self.answer.labels).to(device),
-            "masks": torch.from_numpy(self.answer.masks.astype(np.uint8)).to(device),
-        }
-        return gray.to(device, memory_format=torch.channels_last), [target]
-
-
 def begin(
     weights: dict[str, np.ndarray], schedule: Schedule, *, device: str = "cpu"
 ) -> Run:
     """Set up a run from weights; optimiser and average start anew."""
     torch.manual_seed(schedule.seed)
     network = load_weights(MaskRCNN(), weights).to(device)
-    freeze(network)
+    freeze(network, but_branch=schedule.branch_only)
     learning = [p for p in network.parameters() if p.requires_grad]
     optimiser = torch.optim.AdamW(learning, lr=schedule.rate, weight_decay=1e-3)
     average = {k: v.detach().clone() for k, v in network.state_dict().items()}
@@ -120,8 +67,9 @@ def advance(run: Run, schedule: Schedule, seen: Sequence[Seen]) -> dict[str, flo
     run.network.train()
     run.optimiser.zero_grad(set_to_none=True)
     sums: dict[str, float] = {}
+    ask = run.network.branch_losses if schedule.branch_only else run.network
     for one in seen:
-        losses = run.network(*one.tensors(run.device))
+        losses = ask(*one.tensors(run.device))
         torch.stack(list(losses.values())).sum().div(len(seen)).backward()
         for name, loss in losses.items():
             sums[name] = sums.get(name, 0.0) + loss.item() / len(seen)
@@ -141,48 +89,6 @@ def _average(run: Run, schedule: Schedule) -> None:
     decay = min(schedule.decay, (1 + run.step) / (10 + run.step))
     for name, value in run.network.state_dict().items():
         run.average[name].lerp_(value, 1 - decay)
-
-
-def drawn(
-    pools: Sequence[Sequence[Sample]],
-    cut: Sequence[Donor],
-    step: int,
-    schedule: Schedule,
-) -> list[Seen]:
-    """Draw the photos of one step, the same ones every time."""
-    rngs = [
-        np.random.default_rng([schedule.seed, step, turn])
-        for turn in range(schedule.batch)
-    ]
-    return [dressed(pools, cut, rng, schedule) for rng in rngs]
-
-
-def dressed(
-    pools: Sequence[Sequence[Sample]],
-    cut: Sequence[Donor],
-    rng: np.random.Generator,
-    schedule: Schedule,
-) -> Seen:
-    """Draw one photo, dress it up, and return it with what should be answered.
-
-    It comes from a pool drawn evenly, so that a small pool is not drowned.
-    """
-    short_px = schedule.short_px
-    wanted = [CATEGORIES.index(name) + 1 for name in schedule.answering]
-    while True:
-        pool = pools[int(rng.integers(len(pools)))]
-        sample = view(pool[int(rng.integers(len(pool)))], rng, short_px=short_px)
-        if rng.random() < 0.5:
-            sample = tilted(sample, rng)
-        if rng.random() < 0.5:
-            sample = paste(sample, cut, rng)
-        sample = blemished(sample, rng)
-        answer = truth(sample)
-        if np.isin(answer.labels, wanted).any():
-            break
-    kept = np.isin(answer.labels, [*wanted, UNSCORED])
-    parts = answer.boxes[kept], answer.labels[kept], answer.masks[kept]
-    return Seen(wear(sample.image, rng), Truth(*parts))
 
 
 def save(run: Run, path: Path) -> None:
@@ -212,8 +118,46 @@ def averaged(run: Run) -> MaskRCNN:
     return load_weights(MaskRCNN(), weights).eval()
 
 
+def started(args: argparse.Namespace, schedule: Schedule) -> Run:
+    """Resume a run, or begin one; a start without a branch may be given one."""
+    checkpoint = args.into / "last.pt"
+    if checkpoint.exists():
+        return resume(checkpoint, schedule, device=args.device)
+    weights = read_weights(args.start)
+    if args.branch:
+        trial = from_trial(dict(np.load(args.branch)))
+        weights |= {BRANCH + name: array for name, array in trial.items()}
+    return begin(weights, schedule, device=args.device)
+
+
+def pooled(args: argparse.Namespace) -> tuple[list[list[Sample]], list[Sample]]:
+    """Return the pools that samples are drawn from, and the real photos among them.
+
+    Each pool is drawn evenly: two tax photos and three of streets to one that is
+    painted and two that nobody outlined.
+    """
+    tax, streets = (read_folder(args.data / n) for n in SETS)
+    painted = read_painted(args.painted) if args.painted else []
+    pseudo = []
+    if args.pseudo:
+        pseudo = read_pseudo(args.data / "historic_streets/photos", args.pseudo)
+    pools = [tax] * 2 + [streets] * 3 + [painted] + [pseudo] * 2
+    return [pool for pool in pools if pool], tax + streets
+
+
+def judge(run: Run, data: Path, schedule: Schedule) -> dict[str, dict[str, float]]:
+    """Measure what has been learnt on the photos kept out of either set."""
+    network, rows = averaged(run), {}
+    for name in SETS:
+        samples = read_folder(data / name, held_out=True)
+        if not schedule.branch_only:
+            rows[name] = figures(as_callable(network), samples)
+        rows[f"{name} pixels"] = pixel_figures(pixels_alone(network), samples)
+    return rows
+
+
 def main() -> None:
-    """Train, log, measure on the held-out block, and keep checkpoints."""
+    """Train, log, measure on what is kept out, and keep checkpoints."""
     args = _arguments()
     torch.set_num_threads(args.threads)
     schedule = Schedule(
@@ -222,23 +166,12 @@ def main() -> None:
         batch=args.batch,
         seed=args.seed,
         answering=tuple(args.answering),
+        branch_only=args.branch_only,
     )
-    real = [read_folder(args.data / n) for n in ("taxphotos", "historic_streets")]
-    painted = read_painted(args.painted) if args.painted else []
-    pseudo = []
-    if args.pseudo:
-        pseudo = read_pseudo(args.data / "historic_streets/photos", args.pseudo)
-    # Each pool is drawn evenly: two real photos of either set to one that is painted
-    # and two that nobody outlined.
-    pools = [p for p in (*real, *real, painted, pseudo, pseudo) if p]
-    judged = read_folder(args.data / "taxphotos", held_out=True)
-    cut = donors([s for pool in real for s in pool])
+    pools, real = pooled(args)
+    cut = donors(real)
     args.into.mkdir(parents=True, exist_ok=True)
-    checkpoint = args.into / "last.pt"
-    if checkpoint.exists():
-        run = resume(checkpoint, schedule, device=args.device)
-    else:
-        run = begin(read_weights(args.start), schedule, device=args.device)
+    run = started(args, schedule)
 
     def draw(step: int) -> list[Seen]:
         return drawn(pools, cut, step, schedule)
@@ -251,13 +184,13 @@ def main() -> None:
             row: dict[str, object] = {"step": run.step, **losses}
             row["seconds"] = round(time.monotonic() - since, 1)
             if run.step % args.save_every == 0:
-                save(run, checkpoint)
+                save(run, args.into / "last.pt")
             if run.step % args.judge_every == 0:
-                row["held_out"] = figures(as_callable(averaged(run)), judged)
+                row["held_out"] = judge(run, args.data, schedule)
                 save(run, args.into / f"step{run.step:05d}.pt")
             log.write(json.dumps(row) + "\n")
             log.flush()
-    save(run, checkpoint)
+    save(run, args.into / "last.pt")
 
 
 def _arguments() -> argparse.Namespace:
@@ -265,6 +198,8 @@ def _arguments() -> argparse.Namespace:
     usual = Schedule()
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--start", type=Path, required=True, help=".npz or .onnx")
+    parser.add_argument("--branch", type=Path, help="trial's .npz, if start has none")
+    parser.add_argument("--branch-only", action="store_true", help="hold all else")
     parser.add_argument("--into", type=Path, required=True, help="logs, checkpoints")
     parser.add_argument("--painted", type=Path, help="folder of painted photos")
     parser.add_argument("--pseudo", type=Path, help="folder of pseudo labels")

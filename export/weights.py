@@ -13,7 +13,8 @@ import torch
 from onnx import numpy_helper
 
 GENERATOR = "generator."  # begins the names of the inpainter's weights
-PARTS = ("backbone", "rpn", "roi_heads", GENERATOR)  # what else is named was folded
+BRANCH = "branch."  # begins the names of the semantic branch's weights
+PARTS = ("backbone", "rpn", "roi_heads", BRANCH, GENERATOR)  # what else was folded
 CAST = "|half"  # ends the names of weights that an ONNX file stores in half precision
 
 

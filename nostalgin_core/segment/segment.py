@@ -4,11 +4,11 @@ The photo's exposed frame is resized so that its short side is what the network 
 trained on, each side a multiple of the network's coarsest stride. A detection brings a
 coarse mask of probabilities over its box; it is laid over the box bilinearly, with the
 outer half of its border texels cut off, as Mask R-CNN's masks are defined (He et al.
-2017, section 3).
+2017, section 3). With it comes what every pixel is (`pixels`), which mends the masks.
 """
 
-from collections.abc import Callable, Sequence
-from typing import get_args
+from collections.abc import Callable
+from typing import NamedTuple, get_args
 
 import cv2
 import numpy as np
@@ -18,13 +18,23 @@ from nostalgin_core.arrays import Gray, Probability
 from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
 from nostalgin_core.segment.flare import flares
 from nostalgin_core.segment.hiding import hiding
+from nostalgin_core.segment.pixels import Pixels, checked, mended
 from nostalgin_core.segment.punch import healed, punches
 
 CATEGORIES: tuple[Category, ...] = get_args(Category)
 STRIDE_PX = 32
 
 Network = Callable[[Float32[np.ndarray, "1 1 h w"]], tuple[np.ndarray, ...]]
-"""Maps gray 0 to 255 to boxes (n 4), labels from 1 (n), scores (n), masks (n m m)."""
+"""Maps gray 0 to 255 to boxes (n 4), labels from 1 (n), scores (n), masks (n m m) and
+pixels (4 h/4 w/4): how likely each is ground, front, what hides it, and a front's end.
+"""
+
+
+class Found(NamedTuple):
+    """What the network makes of a photo."""
+
+    things: tuple[Instance, ...]  # surest first
+    pixels: Pixels  # of the frame
 
 
 def segment(
@@ -42,6 +52,9 @@ def segment(
     takes in at a glance. `long_px` bounds memory on panoramas. Scores below the two
     thresholds are dropped: between 0.4 and 0.5 for fronts little changes, and below 0.2
     the exported network is silent.
+
+    Raises:
+        ValueError: if the network doesn't answer what `Network` says.
     """
     least = min(facade_score, occluder_score)
     found = everything(photo, network, least=least, short_px=short_px, long_px=long_px)
@@ -57,15 +70,20 @@ def everything(
     least: float,
     short_px: int = 416,
     long_px: int = 1344,
-) -> tuple[Instance, ...]:
+) -> Found:
     """Place all that the network gives a score of `least`, surest first.
 
     It is shown the photo with punched holes healed.
+
+    Raises:
+        ValueError: if the network doesn't answer what `Network` says.
     """
     x0, y0, x1, y1 = photo.frame
     frame = healed(photo, punches(photo))[y0:y1, x0:x1]
     gray = prepared(frame, short_px=short_px, long_px=long_px)
-    boxes, labels, scores, masks = network(gray[None, None])
+    answer = network(gray[None, None])
+    pixels = checked(answer, gray.shape)
+    boxes, labels, scores, masks, _ = answer
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
     found = []
     for i in np.argsort(-scores, kind="stable"):
@@ -77,12 +95,12 @@ def everything(
             here = Box(box.x0 + x0, box.y0 + y0, box.x1 + x0, box.y1 + y0)
             category = CATEGORIES[int(labels[i]) - 1]
             found.append(Instance(category, float(scores[i]), here, probability))
-    return tuple(found)
+    return Found(tuple(found), pixels)
 
 
 def trusted(
     photo: Photo,
-    found: Sequence[Instance],
+    found: Found,
     *,
     facade_score: float = 0.45,
     occluder_score: float = 0.2,
@@ -90,19 +108,21 @@ def trusted(
     """Keep what scores enough for its kind; a photo without a front is refused.
 
     A tax photo has one number board, so of the placards only the surest is kept. What
-    is painted on fronts is dropped (`hiding`); punched holes and flares on fronts are
-    added, for the network was taught few or none.
+    is painted on fronts is dropped (`hiding`), and pixels mend the masks of the rest;
+    punched holes and flares on fronts are added, for the network was taught few or
+    none.
     """
     least = {"facade": facade_score}
-    board = max((f.score for f in found if f.category == "placard"), default=0.0)
+    board = max((f.score for f in found.things if f.category == "placard"), default=0.0)
     kept = tuple(
         one
-        for one in found
+        for one in found.things
         if one.score >= least.get(one.category, occluder_score)
         and (one.category != "placard" or one.score == board)
     )
     if any(one.category == "facade" for one in kept):
-        return punches(photo) + flares(photo, kept) + hiding(kept)
+        agreed = mended(hiding(kept), found.pixels, photo.frame)
+        return punches(photo) + flares(photo, kept) + agreed
     return Rejection(
         photo.key,
         "segment",

@@ -90,17 +90,18 @@ def answered(file: Path, network: Network) -> Answer:
     shape = decoded.image.shape
     start = time.process_time()
     every = everything(decoded, network, least=UNSURE)
-    segmented = time.process_time()
-    every = quantise.instances(every)
     result = trusted(decoded, every)
+    segmented = time.process_time()
+    things = quantise.instances(every.things)
     if not isinstance(result, Rejection):
         result = quantise.instances(result)
         before = time.process_time()
         result = matte.matte(decoded, result)
         seconds = (segmented - start, time.process_time() - before)
         if not isinstance(result, Rejection):
-            return Answer(shape, every, quantise.matted(result), seconds)
-    return Answer(shape, every, Matted((), ()), (segmented - start, 0.0), result.reason)
+            return Answer(shape, things, quantise.matted(result), seconds)
+    seconds = (segmented - start, 0.0)
+    return Answer(shape, things, Matted((), ()), seconds, result.reason)
 
 
 def compared(answer: Answer, true: Truth) -> dict[str, Any]:

@@ -34,7 +34,7 @@ from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 5,
+    "segment": 6,
     "matte": 7,
     "rectify": 5,
     "inpaint": 5,

@@ -82,9 +82,11 @@ def test_a_photo_that_can_not_be_read_leaves_its_lot_assumed(
 
 
 def test_a_stage_that_declines_ends_the_steps(networks: Networks) -> None:
-    blind = Networks(
-        lambda gray: tuple(one[:0] for one in networks.segment(gray)), networks.inpaint
-    )
+    def nothing(gray: np.ndarray) -> tuple[np.ndarray, ...]:
+        *things, pixels = networks.segment(gray)
+        return (*(one[:0] for one in things), pixels)
+
+    blind = Networks(nothing, networks.inpaint)
     words = [stage for stage, _ in steps.steps(painted.photo(0), blind, name="a")]
     assert words == ["photo", "segment"]
 

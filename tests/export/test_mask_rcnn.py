@@ -8,17 +8,22 @@ import pytest
 torch = pytest.importorskip("torch")
 pytest.importorskip("torchvision")
 
+from export.cells import cells  # noqa: E402
 from export.copy_paste import donors  # noqa: E402
-from export.held_out import judged, together  # noqa: E402
+from export.held_out import (  # noqa: E402
+    as_callable,
+    judged,
+    pixel_figures,
+    pixels_alone,
+    together,
+)
 from export.mask_rcnn import MaskRCNN, freeze, load_weights  # noqa: E402
 from export.segmentation_data import UNSCORED, fill  # noqa: E402
+from export.segmentation_samples import Schedule, drawn, dressed  # noqa: E402
 from export.train_mask_rcnn import (  # noqa: E402
-    Schedule,
     advance,
     averaged,
     begin,
-    drawn,
-    dressed,
     resume,
     save,
 )
@@ -38,12 +43,15 @@ def _weights(seed: int = 0) -> dict[str, np.ndarray]:
 def test_a_detection_is_a_box_a_label_a_score_and_a_mask() -> None:
     network = load_weights(MaskRCNN(score=0.0, detections=7), _weights()).eval()
     with torch.inference_mode():
-        boxes, labels, scores, masks = network(torch.full((1, 1, 128, 160), 90.0))
+        boxes, labels, scores, masks, pixels = network(
+            torch.full((1, 1, 128, 160), 90.0)
+        )
     count = len(boxes)
     assert 0 < count <= 7
     assert boxes.shape == (count, 4)
     assert labels.shape == scores.shape == (count,)
     assert masks.shape == (count, 46, 46)
+    assert pixels.shape == (4, 32, 40)
     assert labels.min() >= 1
     assert labels.max() <= 6
     assert (boxes[:, 2] <= 160).all()
@@ -77,9 +85,12 @@ def test_a_network_may_answer_some_things_alone() -> None:
 def test_networks_that_answer_together_answer_what_each_does() -> None:
     def network(label: int) -> Callable[[np.ndarray], tuple[np.ndarray, ...]]:
         box, mask = np.zeros((label, 4)), np.zeros((label, 46, 46))
-        return lambda _: (box, np.full(label, label), np.ones(label), mask)
+        pixels = np.full((4, 8, 8), 0.2 * label)
+        return lambda _: (box, np.full(label, label), np.ones(label), mask, pixels)
 
-    boxes, labels, scores, masks = together(network(1), network(2))(np.zeros(1))
+    answer = together(network(1), network(2))(np.zeros(1))
+    boxes, labels, scores, masks, pixels = answer
+    np.testing.assert_allclose(pixels, 0.3)
     assert labels.tolist() == [1, 2, 2]
     assert len(boxes) == len(scores) == len(masks) == 3
 
@@ -104,6 +115,41 @@ def test_training_lowers_the_loss_and_leaves_what_is_frozen() -> None:
         before, run.network.backbone.body.stem.parameters(), strict=True
     ):
         assert torch.equal(old, new)
+
+
+def test_a_branch_that_learns_alone_leaves_boxes_and_masks_as_they_are() -> None:
+    alone = replace(SHORT, branch_only=True)
+    run = begin(_weights(), alone)
+    before = {k: v.clone() for k, v in run.network.state_dict().items()}
+    for _ in range(3):
+        losses = advance(run, alone, drawn(POOLS, CUT, run.step, alone))
+        assert set(losses) == {"loss_kinds", "loss_ends"}
+    for name, value in run.network.state_dict().items():
+        assert torch.equal(value, before[name]) == (not name.startswith("branch.")), (
+            name
+        )
+
+
+def test_pixels_alone_are_the_whole_networks() -> None:
+    network = load_weights(MaskRCNN(), _weights()).eval()
+    gray = np.random.default_rng(1).uniform(0, 255, (1, 1, 96, 128))
+    gray = gray.astype(np.float32)
+    (alone,), whole = pixels_alone(network)(gray), as_callable(network)(gray)
+    np.testing.assert_allclose(alone, whole[-1], atol=1e-6)
+
+
+def test_cells_themselves_are_judged_perfect() -> None:
+    sample = painted(size=(416, 416))
+
+    def network(gray: np.ndarray) -> tuple[np.ndarray, ...]:
+        assert gray.shape[-2:] == sample.image.shape
+        return (cells(sample)[:4],)
+
+    row = pixel_figures(network, [sample])
+    assert row["precision"] > 0.98
+    assert row["recall"] > 0.98
+    assert row["l2"] < 0.5
+    assert row["occluders"] > 0.98
 
 
 def test_a_run_that_was_cut_off_ends_where_the_whole_one_does(tmp_path: Path) -> None:
@@ -134,7 +180,7 @@ def test_the_average_of_a_run_can_be_asked() -> None:
     run = begin(_weights(), SHORT)
     advance(run, SHORT, drawn(POOLS, CUT, run.step, SHORT))
     with torch.inference_mode():
-        assert len(averaged(run)(torch.full((1, 1, 64, 64), 90.0))) == 4
+        assert len(averaged(run)(torch.full((1, 1, 64, 64), 90.0))) == 5
 
 
 def test_what_is_frozen_has_no_gradient() -> None:

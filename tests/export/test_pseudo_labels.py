@@ -52,7 +52,8 @@ def fickle(gray: np.ndarray) -> tuple[np.ndarray, ...]:
         labels.append(3)
         scores.append(0.8)
     masks = np.ones((len(boxes), 8, 8), np.float32)
-    return np.array(boxes), np.array(labels), np.array(scores), masks
+    pixels = np.full((4, *(side // 4 for side in gray.shape[-2:])), 0.5, np.float32)
+    return np.array(boxes), np.array(labels), np.array(scores), masks, pixels
 
 
 def test_layers_mirror_back_and_mark_what_is_doubted() -> None:

@@ -55,6 +55,19 @@ def detections() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     return shares, labels, scores, np.array(masks)
 
 
+def pixels() -> np.ndarray:
+    """Tell what every fourth pixel is: ground, front, what hides it, a front's end."""
+    kinds = np.zeros(SIZE, np.uint8)
+    ends = np.zeros(SIZE, np.uint8)
+    for quad in (LEFT, RIGHT):
+        corners = np.rint(quad).astype(np.int32)
+        cv2.fillPoly(kinds, [corners], 1)
+        cv2.polylines(ends, [corners], isClosed=True, color=1, thickness=4)
+    kinds[CAR[1] : CAR[3], CAR[0] : CAR[2]] = 2
+    planes = [np.where(kinds == kind, 0.96, 0.02) for kind in range(3)]
+    return np.stack([*planes, 0.98 * ends])[:, 2::4, 2::4].astype(np.float32)
+
+
 def segment_network() -> bytes:
     """Make a network that sees the same three things in every picture."""
     shares, labels, scores, masks = detections()
@@ -64,18 +77,30 @@ def segment_network() -> bytes:
         "scores": scores,
         "masks": masks,
         "order": np.array([3, 2, 3, 2], np.int64),  # w, h, w, h
+        "sides": np.array([2, 3], np.int64),  # h, w
+        "stride": np.array(4, np.int64),
+        "first": np.array([1, 4], np.int64),
+        "axis": np.array([0], np.int64),
+        "planes": pixels()[None],
     }
     nodes = [
         helper.make_node("Shape", ["image"], ["shape"]),
         helper.make_node("Gather", ["shape", "order"], ["extent"]),
         helper.make_node("Cast", ["extent"], ["extent32"], to=TensorProto.FLOAT),
         helper.make_node("Mul", ["shares", "extent32"], ["boxes"]),
+        helper.make_node("Gather", ["shape", "sides"], ["whole"]),
+        helper.make_node("Div", ["whole", "stride"], ["cells"]),
+        helper.make_node("Concat", ["first", "cells"], ["wanted"], axis=0),
+        helper.make_node(
+            "Resize", ["planes", "", "", "wanted"], ["resized"], mode="linear"
+        ),
+        helper.make_node("Squeeze", ["resized", "axis"], ["pixels"]),
     ]
     nodes += [
         helper.make_node("Identity", [name], [f"{name}_out"])
         for name in ("labels", "scores", "masks")
     ]
-    kinds = {"boxes": 1, "labels_out": 7, "scores_out": 1, "masks_out": 1}
+    kinds = {"boxes": 1, "labels_out": 7, "scores_out": 1, "masks_out": 1, "pixels": 1}
     return network(nodes, constants, ["image"], kinds)
 
 

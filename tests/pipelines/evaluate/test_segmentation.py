@@ -65,7 +65,13 @@ def _network(*things: tuple[str, tuple[int, ...], float], texels: int = 46) -> N
         names = np.array([CATEGORIES.index(kind) + 1 for kind, _, _ in things])
         scores = np.array([score for _, _, score in things], np.float32)
         masks = np.ones((len(things), texels, texels), np.float32)
-        return boxes.astype(np.float32), names, scores, masks
+        kinds = np.zeros(gray.shape[2:], np.uint8)
+        for (kind, _, _), box in zip(things, np.rint(boxes).astype(int), strict=True):
+            kinds[box[1] : box[3], box[0] : box[2]] = 1 if kind == "facade" else 2
+        planes = [np.where(kinds == kind, 0.98, 0.01) for kind in range(3)]
+        pixels = np.stack([*planes, np.zeros(kinds.shape)])[:, 2::4, 2::4]
+        answer = boxes.astype(np.float32), names, scores, masks
+        return *answer, pixels.astype(np.float32)
 
     return answer
 
