@@ -13,7 +13,7 @@ from pipelines import bounded
 
 LOCK: Final = "models.lock"
 NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
-SHAPES: Final = {"segment": (1, 4), "inpaint": (3, 1)}  # inputs, outputs
+SHAPES: Final = {"segment": (1, 5), "inpaint": (3, 1)}  # inputs, outputs
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
 
 
@@ -58,17 +58,20 @@ class Models:
         Raises:
             Unlocked: if it is not, or does not run.
         """
-        from nostalgin_core import session
+        from nostalgin_core import segment, session
 
         data, lock = self.read(name), self.sha256(name)
         inputs, outputs = SHAPES[name]
         try:
-            return session.load(data, lock, inputs=inputs, outputs=outputs)
-        except session.ModelBrokenError as problem:
+            network = session.load(data, lock, inputs=inputs, outputs=outputs)
+            if name == "segment":
+                segment.probe(network)
+        except (session.ModelBrokenError, segment.Nonsense) as problem:
             raise Unlocked(
                 f"{Path(self.folder) / name}.onnx does not run ({problem}): install "
                 "the package again, or export the network anew"
             ) from problem
+        return network
 
     def read(self, name: str) -> bytes:
         """Read a network's file, and refuse one that is not what the lock names.

@@ -4,6 +4,7 @@ In: a `Photo` and a network. Out: its `Instance`s, one mask each, or a `Rejectio
 Paper: section 3.2, Mask R-CNN. Open `segment` first.
 """
 
-from nostalgin_core.segment.segment import CATEGORIES, Network, segment
+from nostalgin_core.segment.answer import CATEGORIES, Network, Nonsense, probe
+from nostalgin_core.segment.segment import segment
 
-__all__ = ["CATEGORIES", "Network", "segment"]
+__all__ = ["CATEGORIES", "Network", "Nonsense", "probe", "segment"]

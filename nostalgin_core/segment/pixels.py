@@ -23,9 +23,8 @@ import numpy as np
 from jaxtyping import Float32
 
 from nostalgin_core.records import Box, Instance
+from nostalgin_core.segment.answer import Pixels
 
-STRIDE_PX: Final = 4  # of the network's input, a pixel's answer
-PLANES: Final = 4  # ground, front, what hides it, an end of a front
 FRONT_WEIGHT: Final = 0.65
 HIDING_WEIGHT: Final = 0.75
 HIDING_PRIOR: Final = 2.0
@@ -33,26 +32,7 @@ DOUBT: Final = 0.02  # no witness is surer than this less than 1
 LEAST: Final = 1e-3  # of a claim; below it, nothing is shared
 SMALLEST: Final = 0.0003  # of the frame: 140 px in 560 x 840
 
-Pixels = Float32[np.ndarray, "4 rows columns"]
 _Plane = Float32[np.ndarray, "h w"]
-
-
-def checked(answer: Sequence[np.ndarray], shape: tuple[int, int]) -> Pixels:
-    """Return a network's answer about pixels, the last of five.
-
-    Raises:
-        ValueError: if there is none, or it is of another size than the image's.
-    """
-    if len(answer) != 5:
-        raise ValueError(
-            f"the segmentation network gives {len(answer)} outputs instead of boxes, "
-            "labels, scores, masks and pixels: it is older than this program; install "
-            "the package again, or export it anew"
-        )
-    wanted = (PLANES, *(side // STRIDE_PX for side in shape))
-    if answer[4].shape != wanted:
-        raise ValueError(f"pixels have shape {answer[4].shape}, not {wanted}")
-    return answer[4]
 
 
 def mended(

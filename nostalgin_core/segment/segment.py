@@ -7,27 +7,21 @@ outer half of its border texels cut off, as Mask R-CNN's masks are defined (He e
 2017, section 3). With it comes what every pixel is (`pixels`), which mends the masks.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple, get_args
+from typing import NamedTuple
 
 import cv2
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from nostalgin_core.arrays import Gray, Probability
-from nostalgin_core.records import Box, Category, Instance, Photo, Rejection
+from nostalgin_core.records import Box, Instance, Photo, Rejection
+from nostalgin_core.segment.answer import CATEGORIES, Network, Pixels, checked
 from nostalgin_core.segment.flare import flares
 from nostalgin_core.segment.hiding import hiding
-from nostalgin_core.segment.pixels import Pixels, checked, mended
+from nostalgin_core.segment.pixels import mended
 from nostalgin_core.segment.punch import healed, punches
 
-CATEGORIES: tuple[Category, ...] = get_args(Category)
 STRIDE_PX = 32
-
-Network = Callable[[Float32[np.ndarray, "1 1 h w"]], tuple[np.ndarray, ...]]
-"""Maps gray 0 to 255 to boxes (n 4), labels from 1 (n), scores (n), masks (n m m) and
-pixels (4 h/4 w/4): how likely each is ground, front, what hides it, and a front's end.
-"""
 
 
 class Found(NamedTuple):
@@ -54,7 +48,7 @@ def segment(
     the exported network is silent.
 
     Raises:
-        ValueError: if the network doesn't answer what `Network` says.
+        Nonsense: if the network doesn't answer what `Network` says.
     """
     least = min(facade_score, occluder_score)
     found = everything(photo, network, least=least, short_px=short_px, long_px=long_px)
@@ -76,14 +70,13 @@ def everything(
     It is shown the photo with punched holes healed.
 
     Raises:
-        ValueError: if the network doesn't answer what `Network` says.
+        Nonsense: if the network doesn't answer what `Network` says.
     """
     x0, y0, x1, y1 = photo.frame
     frame = healed(photo, punches(photo))[y0:y1, x0:x1]
     gray = prepared(frame, short_px=short_px, long_px=long_px)
-    answer = network(gray[None, None])
-    pixels = checked(answer, gray.shape)
-    boxes, labels, scores, masks, _ = answer
+    answer = checked(network(gray[None, None]), gray.shape)
+    boxes, labels, scores, masks, pixels = answer
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
     found = []
     for i in np.argsort(-scores, kind="stable"):

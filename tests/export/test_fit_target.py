@@ -5,7 +5,7 @@ pytest.importorskip("torch")
 pytest.importorskip("onnx")
 
 from export.fit_target import Fronts, fit, fronts, right
-from nostalgin_core.segment.segment import CATEGORIES
+from nostalgin_core.segment import CATEGORIES
 from tests.export.painted_segmentation import painted
 
 

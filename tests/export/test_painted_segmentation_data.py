@@ -6,7 +6,7 @@ import pytest
 from export.inpainting_data import Sheet
 from export.painted_segmentation_data import clean, paint, read_painted, rings, sample
 from export.segmentation_data import fill, truth
-from nostalgin_core.segment.segment import CATEGORIES
+from nostalgin_core.segment import CATEGORIES
 
 
 def pierced() -> np.ndarray:

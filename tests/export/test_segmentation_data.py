@@ -4,7 +4,7 @@ import pytest
 from export.copy_paste import donors, paste
 from export.segmentation_data import UNSCORED, read_folder, truth, view
 from export.wear import wear
-from nostalgin_core.segment.segment import CATEGORIES
+from nostalgin_core.segment import CATEGORIES
 from tests.data import DATA, needs_data
 from tests.export.painted_segmentation import painted
 

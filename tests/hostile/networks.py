@@ -86,17 +86,18 @@ def sparse(path: Path) -> None:
 def answering(**changed: np.ndarray) -> bytes:
     """Make a segmenting network that gives other constants than it should."""
     _, labels, scores, masks = painted.detections()
-    boxes = np.zeros((len(labels), 4), np.float32) + 9
     given = {
-        "boxes": boxes,
+        "boxes": np.zeros((len(labels), 4), np.float32) + 9,
         "labels": labels,
         "scores": scores,
         "masks": masks,
     } | changed
     nodes = [helper.make_node("Identity", [f"{n}_in"], [n]) for n in given]
-    nodes += [helper.make_node("Shape", ["image"], ["shape"])]
-    constants = {f"{name}_in": value for name, value in given.items()}
+    constants, answers = painted.of_pixels()
+    nodes += [helper.make_node("Shape", ["image"], ["shape"]), *answers]
+    constants |= {f"{name}_in": value for name, value in given.items()}
     kinds = {n: helper.np_dtype_to_tensor_dtype(v.dtype) for n, v in given.items()}
+    kinds["pixels"] = TensorProto.FLOAT
     return painted.network(nodes, constants, ["image"], kinds)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import onnx
 from onnx import TensorProto, helper, numpy_helper
 
 from pipelines.index.index import index
@@ -68,6 +69,27 @@ def pixels() -> np.ndarray:
     return np.stack([*planes, 0.98 * ends])[:, 2::4, 2::4].astype(np.float32)
 
 
+def of_pixels() -> tuple[dict[str, np.ndarray], list[onnx.NodeProto]]:
+    """Give the constants and steps that answer for the pixels of an image's `shape`."""
+    constants = {
+        "sides": np.array([2, 3], np.int64),  # h, w
+        "stride": np.array(4, np.int64),
+        "first": np.array([1, 4], np.int64),
+        "axis": np.array([0], np.int64),
+        "planes": pixels()[None],
+    }
+    nodes = [
+        helper.make_node("Gather", ["shape", "sides"], ["whole"]),
+        helper.make_node("Div", ["whole", "stride"], ["cells"]),
+        helper.make_node("Concat", ["first", "cells"], ["wanted"], axis=0),
+        helper.make_node(
+            "Resize", ["planes", "", "", "wanted"], ["resized"], mode="linear"
+        ),
+        helper.make_node("Squeeze", ["resized", "axis"], ["pixels"]),
+    ]
+    return constants, nodes
+
+
 def segment_network() -> bytes:
     """Make a network that sees the same three things in every picture."""
     shares, labels, scores, masks = detections()
@@ -77,25 +99,16 @@ def segment_network() -> bytes:
         "scores": scores,
         "masks": masks,
         "order": np.array([3, 2, 3, 2], np.int64),  # w, h, w, h
-        "sides": np.array([2, 3], np.int64),  # h, w
-        "stride": np.array(4, np.int64),
-        "first": np.array([1, 4], np.int64),
-        "axis": np.array([0], np.int64),
-        "planes": pixels()[None],
     }
     nodes = [
         helper.make_node("Shape", ["image"], ["shape"]),
         helper.make_node("Gather", ["shape", "order"], ["extent"]),
         helper.make_node("Cast", ["extent"], ["extent32"], to=TensorProto.FLOAT),
         helper.make_node("Mul", ["shares", "extent32"], ["boxes"]),
-        helper.make_node("Gather", ["shape", "sides"], ["whole"]),
-        helper.make_node("Div", ["whole", "stride"], ["cells"]),
-        helper.make_node("Concat", ["first", "cells"], ["wanted"], axis=0),
-        helper.make_node(
-            "Resize", ["planes", "", "", "wanted"], ["resized"], mode="linear"
-        ),
-        helper.make_node("Squeeze", ["resized", "axis"], ["pixels"]),
     ]
+    more, answering = of_pixels()
+    constants |= more
+    nodes += answering
     nodes += [
         helper.make_node("Identity", [name], [f"{name}_out"])
         for name in ("labels", "scores", "masks")

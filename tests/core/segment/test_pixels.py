@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from nostalgin_core.records import Box, Instance
-from nostalgin_core.segment.pixels import DOUBT, checked, mended, pool
+from nostalgin_core.segment.pixels import DOUBT, mended, pool
 
 FRAME = Box(20, 10, 180, 138)  # 160 x 128: 40 x 32 cells of 4
 ROWS, COLUMNS = 32, 40
@@ -132,11 +132,3 @@ def test_nothing_leaves_zero_to_one_or_the_frame() -> None:
         assert FRAME.x0 <= x0 < x1 <= FRAME.x1
         assert FRAME.y0 <= y0 < y1 <= FRAME.y1
         assert one.probability.shape == (y1 - y0, x1 - x0)
-
-
-def test_a_network_without_pixels_or_with_others_is_refused() -> None:
-    whole = [np.zeros(0)] * 4
-    with pytest.raises(ValueError, match=r"gives 4 outputs.*install the package again"):
-        checked(whole, (128, 160))
-    with pytest.raises(ValueError, match=r"shape \(4, 32, 39\), not \(4, 32, 40\)"):
-        checked([*whole, np.zeros((4, 32, 39), np.float32)], (128, 160))

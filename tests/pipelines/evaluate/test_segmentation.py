@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from nostalgin_core.segment.segment import CATEGORIES
+from nostalgin_core.segment import CATEGORIES
 from pipelines.cli import app
 from pipelines.evaluate import Unmeasurable, labels, segmentation, segmentation_table
 
