@@ -197,9 +197,12 @@ def launched(
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
     write(city(pipeline, planned(todo, found), bench), bench, run)
     try:
-        with embedded.on_loopback():
+        with embedded.on_loopback(), embedded.ending_with_a_worker():
             result = pipeline.run()
             result.wait_until_finish()
+    except embedded.WorkerLost as problem:
+        words = f"{problem}: build again, with fewer workers if memory is short"
+        raise Lost(f"{words}; what is kept already is not made twice") from problem
     except Unstored as problem:
         raise Lost(unstored(bench.store, str(problem))) from problem
     except RuntimeError as problem:  # a worker's exception reaches us as its traceback

@@ -1,13 +1,16 @@
 """Beam's embedded runner: any interpreter starts its workers, no stranger reaches them.
 
 Beam starts its workers by a command that a shell reads, in which a blank in the
-interpreter's path ends it; and it opens the ports that they call at on every interface
-of the machine, to whoever comes. Both are set right here.
+interpreter's path ends it; it opens the ports that they call at on every interface of
+the machine, to whoever comes; and it waits for ever for a worker that was killed. All
+three are set right here.
 """
 
 import contextlib
 import shlex
+import signal
 import sys
+import threading
 from collections.abc import Iterator
 from typing import Any, Final
 from unittest import mock
@@ -25,6 +28,11 @@ EMBEDDED: Final = "FnApiRunner"
 WORKER: Final = "pipelines.build.worker"
 EVERYWHERE: Final = "[::]:"
 HERE: Final = "localhost:"  # as the workers are told to call
+ENDED: Final = "Worker subprocess exited"  # as Beam tells the thread that waited
+
+
+class WorkerLost(RuntimeError):  # noqa: N818 - it reads as what it is about
+    """A worker that was killed: for want of memory, it may be."""
 
 
 def runner(options: PipelineOptions) -> FnApiRunner | None:
@@ -54,6 +62,35 @@ def in_process(options: PipelineOptions) -> bool:
 def command() -> str:
     """Write what a shell is to start as a worker."""
     return f"{shlex.quote(sys.executable)} -m {WORKER}"
+
+
+@contextlib.contextmanager
+def ending_with_a_worker() -> Iterator[None]:
+    """End what the main thread waits for when a worker is no more.
+
+    Raises:
+        WorkerLost: if one is.
+    """
+    main, lost = threading.main_thread(), threading.Event()
+    told = threading.excepthook
+
+    def hook(raised: threading.ExceptHookArgs) -> None:
+        if ENDED not in str(raised.exc_value) or main.ident is None:
+            told(raised)
+        elif not lost.is_set():
+            lost.set()
+            signal.pthread_kill(main.ident, signal.SIGINT)
+
+    if threading.current_thread() is not main:
+        yield
+        return
+    with mock.patch.object(threading, "excepthook", hook):
+        try:
+            yield
+        except KeyboardInterrupt:
+            if not lost.is_set():
+                raise
+            raise WorkerLost("a worker's process was killed") from None
 
 
 @contextlib.contextmanager
