@@ -39,7 +39,10 @@ def test_fronts_are_weighed_as_drawn_and_as_found() -> None:
         labels = np.full(2, CATEGORIES.index("facade") + 1)
         scores = np.array([0.8, 0.7], np.float32)
         scale = np.array([width, height] * 2, np.float32)
-        return boxes * scale, labels, scores, np.ones((2, 28, 28), np.float32)
+        masks = np.ones((2, 28, 28), np.float32)
+        kinds = np.array([0.05, 0.9, 0.05, 0.0], np.float32)[:, None, None]
+        pixels = np.tile(kinds, (1, height // 4, width // 4))
+        return boxes * scale, labels, scores, masks, pixels
 
     drawn, found = fronts([painted()], network)
     for rows, recorded in (drawn, found):

@@ -121,10 +121,10 @@ def test_a_connection_in_use_outlives_idle_ones(running: view.Server) -> None:
     port = running.server_address[1]
     used = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
     with contextlib.ExitStack() as opened:
-        for _ in range(10):
+        for _ in range(20):
             used.request("GET", "/")
             assert used.getresponse().read() == b"{}"
-            for _ in range(view.MOST_OPEN // 2):
+            for _ in range(view.MOST_OPEN // 4):
                 idle = socket.create_connection(("127.0.0.1", port), timeout=10)
                 opened.enter_context(idle)
         assert used.sock is not None

@@ -1,14 +1,15 @@
 """What was damaged is made again; what is worse takes nothing's place."""
 
+import hashlib
 import json
 import shutil
+import subprocess
 import sys
 import threading
 from pathlib import Path
 
 import pytest
 
-from pipelines.store.store import Store
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, built, copied, tree
 
@@ -114,12 +115,35 @@ def test_a_reader_meets_one_city_or_the_other_while_they_change(
     assert len({tuple(told) for told in read}) == 3
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="processes are listed in /proc")
-def test_a_stage_that_kills_its_process_stops_no_other_photo(
+BROKEN = """
+import os, sys
+from pathlib import Path
+from nostalgin_core import matte
+from pipelines import cli
+
+sound, key, calls = matte.matte, sys.argv.pop(), Path(sys.argv.pop())
+
+def broken(picture, found):
+    if picture.key == key:
+        calls.open("a").write("x")
+        os.abort()
+    return sound(picture, found)
+
+matte.matte = broken
+cli.main()
+"""
+
+
+def test_a_photo_that_kills_its_stage_is_put_aside_and_stops_no_other(
     city: Path, tmp_path: Path
 ) -> None:
-    other = copied(city, tmp_path)
-    report = built(other, ("--stage_gigabytes=0.05",))  # too little to begin with
-    assert report.rejected_photos == 4
-    assert {one["reason"] for one in report.rejections} <= {"put aside", "crashed"}
-    assert Store(str(other)).exists("CURRENT")
+    other, calls = copied(city, tmp_path), tmp_path / "calls"
+    photo = (city.parent / "photos/5_1.png").read_bytes()
+    key = hashlib.sha256(photo).hexdigest()[:16]
+    words = ["build", str(other), "--models", str(tmp_path / "models")]
+    for _ in range(2):  # the second run knows it, and doesn't try again
+        command = [sys.executable, "-c", BROKEN, *words, str(calls), key]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        assert "5_1.png: matte: put aside: its process died 2 times" in done.stderr
+        assert "1 of them gave nothing" in done.stderr
+        assert calls.read_text() == "xx"
