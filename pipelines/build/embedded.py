@@ -29,6 +29,8 @@ WORKER: Final = "pipelines.build.worker"
 EVERYWHERE: Final = "[::]:"
 HERE: Final = "localhost:"  # as the workers are told to call
 ENDED: Final = "Worker subprocess exited"  # as Beam tells the thread that waited
+SOON_S: Final = 3.0
+CLOSED: Final = "Channel closed prematurely"  # and whoever sent it work
 
 
 class WorkerLost(RuntimeError):  # noqa: N818 - it reads as what it is about
@@ -71,14 +73,16 @@ def ending_with_a_worker() -> Iterator[None]:
     Raises:
         WorkerLost: if one is.
     """
-    main, lost = threading.main_thread(), threading.Event()
-    told = threading.excepthook
+    main, told = threading.main_thread(), threading.excepthook
+    lost, over = threading.Event(), threading.Event()
 
     def hook(raised: threading.ExceptHookArgs) -> None:
         if ENDED not in str(raised.exc_value) or main.ident is None:
             told(raised)
-        elif not lost.is_set():
-            lost.set()
+            return
+        first = not lost.is_set()
+        lost.set()
+        if first and not over.is_set():
             signal.pthread_kill(main.ident, signal.SIGINT)
 
     if threading.current_thread() is not main:
@@ -87,10 +91,14 @@ def ending_with_a_worker() -> Iterator[None]:
     with mock.patch.object(threading, "excepthook", hook):
         try:
             yield
-        except KeyboardInterrupt:
-            if not lost.is_set():
+        except (KeyboardInterrupt, RuntimeError) as problem:
+            over.set()
+            if not lost.is_set() and CLOSED not in str(problem):
                 raise
+            lost.wait(SOON_S)  # or else its thread would print a traceback
             raise WorkerLost("a worker's process was killed") from None
+        finally:
+            over.set()
 
 
 @contextlib.contextmanager
