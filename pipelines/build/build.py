@@ -86,6 +86,7 @@ def build(
     store, shard = Store(ours.city), part(ours.shard)
     if in_process(options) and ours.stage_seconds:
         POOL.fill()  # before there are threads and open files
+    cluster.reached(options)  # which takes a second, where somebody is there
     with held(store, shared=shard != (1, 1)):
         return made(options, store, shard, tell, watch)
 
@@ -121,7 +122,6 @@ def made(
     tell("start", words, run=run, **counts)
     began = time.time()
     note(store, run, options, began)  # a folder that can't be written to is told now
-    cluster.reached(options)
     near = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):

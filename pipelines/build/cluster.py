@@ -20,7 +20,7 @@ from apache_beam.options.pipeline_options import (
 
 from pipelines.build.embedded import EMBEDDED
 
-WAIT_S: Final = 6.0  # for a host; one that is there answers in a second
+WAIT_S: Final = 3.0  # for a host; one that is there answers in a second
 DATAFLOW: Final = "apache_beam.runners.dataflow.internal.apiclient"
 LINES: Final = 8  # of what a runner says
 WITHIN: Final = ("embed", "[local]", "[auto]", "")  # the runner starts it by itself
