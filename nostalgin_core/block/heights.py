@@ -44,9 +44,7 @@ class Shown:
     aspect: float
     aspect_sd: float
     score: float
-    storeys: tuple[
-        float, ...
-    ] = ()  # a score for each of `COUNTS`, if they were counted
+    storeys: tuple[float, ...] = ()  # a score for each of `COUNTS`, if they were told
 
 
 class Told(NamedTuple):

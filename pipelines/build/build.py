@@ -41,12 +41,11 @@ from pipelines.store import Damaged, Store, Unstored, held, runs
 from pipelines.store.versions import Versions
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
-LEAST_SHOWN: Final = 0.5  # of the photos; with more no city is held back
+LEAST_SHOWN: Final = 0.5  # of the photos: a city that shows more is never held back
 
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage
 Watch = Callable[[Count, int], AbstractContextManager[object]]  # of so many photos
-
 
 # As a worker's traceback has it; a run's tables are written without `keep`.
 UNWRITTEN: Final = (

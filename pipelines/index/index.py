@@ -70,13 +70,7 @@ def index(
     names, unnamed = images(photos, city)
     read = from_names(names, photos) if listed is None else from_csv(listed)
     entries, crowded = sparse(read.entries)
-    wanted = [e for e in entries if not blocks or e.block in blocks]
-    if not wanted and crowded:
-        raise Nothing(f"{crowded[0].key}: {crowded[0].reason}: {crowded[0].detail}")
-    if not wanted:
-        raise Nothing(
-            f"{listed or photos} lists none of the blocks {', '.join(blocks)}"
-        )
+    wanted = of_blocks(entries, blocks, crowded, where=listed or photos)
     fronts, doubts = catalogue.fronts(wanted)
     shown, strangers = catalogue.matched(entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
@@ -102,6 +96,26 @@ def index(
         ),
         warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts, *kept),
     )
+
+
+def of_blocks(
+    entries: Sequence[catalogue.Entry],
+    blocks: Sequence[str],
+    crowded: Sequence[Rejection],
+    *,
+    where: Path,
+) -> list[catalogue.Entry]:
+    """Take the entries of the blocks that are asked for, or of all.
+
+    Raises:
+        Nothing: if there are none.
+    """
+    wanted = [entry for entry in entries if not blocks or entry.block in blocks]
+    if wanted:
+        return wanted
+    if crowded:
+        raise Nothing(f"{crowded[0].key}: {crowded[0].reason}: {crowded[0].detail}")
+    raise Nothing(f"{where} lists none of the blocks {', '.join(blocks)}")
 
 
 def replaceable(store: Store, *, force: bool) -> tuple[str, bytes] | None:

@@ -33,7 +33,7 @@ VIEWER: Final = Path(__file__).with_name("viewer_dist")
 THUMBNAIL_PX: Final = 1000  # a panel is 370 px wide, on screens of up to 2.7 px a point
 SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
 
-PAGES: Final = ("index.html", "site.json", "tileset.json")
+SWAPPED: Final = ("site.json", "tileset.json")  # last, in this order
 
 Json = dict[str, Any]
 
@@ -106,17 +106,18 @@ def assemble(
         "blocks": [_block(uri, one, files) for uri, one in models.items()],
     }
     assets = {f"assets/{p.name}": p for p in sorted((viewer / "assets").iterdir())}
-    site = Folder(destination, [*assets, *files.values(), *models, named, *PAGES])
+    site = Folder(
+        destination, [*assets, *files.values(), *models, "index.html", named, *SWAPPED]
+    )
     for name, path in assets.items():
         site.write(name, path.read_bytes())
     for key, data in photos.items():
         site.write(files[key], data)
     for uri, one in models.items():
         site.write(uri, content(one))
-    site.write("index.html", index.read_bytes())
-    site.write(named, tileset)
-    site.write("site.json", _text(record))
-    site.write("tileset.json", tileset)
+    pages = (index.read_bytes(), tileset, _text(record), tileset)
+    for name, data in zip(("index.html", named, *SWAPPED), pages, strict=True):
+        site.write(name, data)
     site.prune()
 
 

@@ -121,12 +121,17 @@ class Store:
         target = f"{root}/{name}"
         system.create_dir(target.rpartition("/")[0], recursive=True)
         partial = f"{target}.{uuid.uuid4().hex[:8]}.partial"
-        if isinstance(system, pafs.LocalFileSystem):
-            durable(Path(partial), data)
-        else:
-            with system.open_output_stream(partial) as stream:
-                stream.write(data)
-        system.move(partial, target)
+        try:
+            if isinstance(system, pafs.LocalFileSystem):
+                durable(Path(partial), data)
+            else:
+                with system.open_output_stream(partial) as stream:
+                    stream.write(data)
+            system.move(partial, target)
+        except OSError:
+            with contextlib.suppress(OSError):  # a full disk need not keep a torn file
+                system.delete_file(partial)
+            raise
 
     def names(self, folder: str) -> list[str]:
         """Name the files in a folder; none where there is no folder."""

@@ -71,6 +71,14 @@ def test_nothing_half_written_is_left(store: Store) -> None:
     assert list(files(store)) == ["deep/down/a.parquet"]
 
 
+def test_a_failed_write_leaves_nothing_behind(store: Store) -> None:
+    in_the_way = Path(store.root, "a")
+    (in_the_way / "b").mkdir(parents=True)
+    with pytest.raises(OSError, match="a"):
+        store.write_bytes("a", b"1")
+    assert [file.name for file in Path(store.root).iterdir()] == ["a"]
+
+
 def test_some_columns_can_be_read_alone(store: Store) -> None:
     store.keep("a.parquet", ROWS)
     assert store.read_table("a.parquet", ["score"]).column_names == ["score"]

@@ -1,9 +1,10 @@
-"""What `build` and `demo` share: options are checked, a build runs, its end is told."""
+"""What commands share: options, and how a build is checked, run and told."""
 
 import logging
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -13,6 +14,16 @@ if TYPE_CHECKING:  # both are slow to load
     from apache_beam.options.pipeline_options import PipelineOptions
 
     from pipelines.build import Report
+
+TOO_MANY_REJECTIONS: Final = 3
+
+ModelsFolder = Annotated[
+    Path | None,
+    typer.Option("--models", help="Folder with other networks and their models.lock."),
+]
+JsonLines = Annotated[
+    bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
+]
 
 
 def told(

@@ -1,0 +1,71 @@
+"""`nostalgin explain`: one photograph through every stage."""
+
+import time
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+
+from pipelines import bounded
+from pipelines.cli.launch import ModelsFolder
+from pipelines.console import echo, fail, unwritable
+
+EXAMPLES: Final = """
+Examples:
+
+  nostalgin explain photo.jpg -o out         [dim]# pictures and explain.json in out/[/]
+
+  nostalgin explain photo.jpg -o out --no-placard
+"""
+
+
+def explain_command(
+    photo: Annotated[Path, typer.Argument(help="The photograph.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write to.")],
+    *,
+    placard: Annotated[
+        bool, typer.Option(help="Read the number board in the photo.")
+    ] = True,
+    every: Annotated[
+        bool,
+        typer.Option(
+            "--every-facade",
+            help="Inpaint the neighbours' facades, too; it takes time.",
+        ),
+    ] = False,
+    models: ModelsFolder = None,
+) -> None:
+    """Take one photo through every stage and show what each made of it.
+
+    Writes every stage as a PNG, the stages side by side as panel.png, and their numbers
+    as explain.json. The file's name is never looked at.
+    """
+    started = time.process_time()
+    from pipelines.models import one_thread
+
+    one_thread()
+    from pipelines import explain
+    from pipelines import models as shelf
+
+    try:
+        data = bounded.read(photo, bounded.PHOTO_BYTES)
+    except OSError as problem:
+        raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
+    try:
+        networks = shelf.Models(str(models or shelf.PACKAGED)).networks(placard=placard)
+        report = explain.explain(data, out, networks, started=started, every=every)
+    except explain.Unreadable as problem:
+        raise fail(f"{photo}: {problem}") from problem
+    except shelf.Unlocked as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(out, problem) from problem
+    targets = sum(one["target"] for one in report["facades"])
+    echo(
+        f"{len(report['facades'])} facades ({targets} target), "
+        f"{len(report['occluders'])} occluders, {report['seconds']['total']:.1f} CPU s"
+    )
+    for one in report["rejections"]:
+        which = f" facade {one['facade']}" if one.get("facade") is not None else ""
+        echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
+    echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")

@@ -1,0 +1,64 @@
+"""`nostalgin index`: a folder of photographs and a list become a manifest."""
+
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
+from pipelines.console import Voice, errors, fail, indexed, unwritable
+
+EXAMPLES: Final = """
+Examples:
+
+  nostalgin index photos --catalogue list.csv -o city
+
+  nostalgin index photos -o city                      [dim]# file names tell the lots[/]
+
+  nostalgin index photos --catalogue list.csv -o city --block 993
+
+  nostalgin index photos -o city --title "Midtown, 1940"
+"""
+
+
+def index_command(
+    photos: Annotated[Path, typer.Argument(help="The folder that holds the photos.")],
+    city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
+    *,
+    catalogue: Annotated[
+        Path | None, typer.Option(help="CSV with block, lot, street, address, width.")
+    ] = None,
+    block: Annotated[
+        list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
+    ] = None,
+    credit: Annotated[str, typer.Option(help="Whom to name beside the photos.")] = "",
+    title: Annotated[
+        str, typer.Option(help="The city's name on its page; else its folder's.")
+    ] = "",
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace a mended manifest; a copy is kept.")
+    ] = False,
+    json_lines: JsonLines = False,
+) -> None:
+    """Write a city folder's manifest: which photo shows which fronts, in what order.
+
+    It is written as manifest.csv too, to be mended by hand; docs/manifest.md describes
+    its columns.
+    """
+    from pipelines import index
+    from pipelines.store import Busy, Store, held
+
+    voice = Voice(errors, machine=json_lines)
+    named = {"credit": credit, "title": title}
+    try:
+        with held(Store(city)):
+            made = index.index(
+                photos, catalogue, city, blocks=block or (), force=force, **named
+            )
+    except (index.Nothing, Busy) as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(city, problem) from problem
+    indexed(made, city, voice)
+    if made.astray:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
