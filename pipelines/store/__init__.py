@@ -6,7 +6,7 @@ code and parameters that made it, `runs` and `tables`.
 """
 
 from pipelines.store.aside import Aside
-from pipelines.store.lock import Busy, held
+from pipelines.store.lock import Busy, busy, held
 from pipelines.store.seal import Damaged
 from pipelines.store.store import Store, Unstored, durable, parquet_bytes, textual
 
@@ -16,6 +16,7 @@ __all__ = [
     "Damaged",
     "Store",
     "Unstored",
+    "busy",
     "durable",
     "held",
     "parquet_bytes",

@@ -69,6 +69,25 @@ def take(file: int, store: Store, *, shared: bool) -> None:
             raise
 
 
+def busy(store: Store) -> str:
+    """Tell who has a city folder to itself; "" if nobody has. Shards are not seen."""
+    if "://" in store.root:
+        return ""
+    try:
+        file = os.open(Path(store.root) / LOCK, os.O_RDONLY | os.O_CLOEXEC)
+    except FileNotFoundError:
+        return ""
+    try:
+        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return whose(file) or " (nothing tells whose it is)"
+    except OSError:
+        return ""  # a file system without locks
+    finally:
+        os.close(file)
+    return ""
+
+
 def owner() -> dict[str, str | int]:
     """Tell who this process is."""
     began = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
