@@ -4,7 +4,8 @@ In: outlines and fronts of each block. Out: its `Move`, and a tileset.
 Paper: section 3.5, there "a trivial extension". Open `city` first.
 """
 
-from nostalgin_core.city.city import Move, places, plot
+from nostalgin_core.city.city import places
+from nostalgin_core.city.plot import Move, plot
 from nostalgin_core.city.tileset import Place, Tile, tileset
 
 __all__ = ["Move", "Place", "Tile", "places", "plot", "tileset"]
