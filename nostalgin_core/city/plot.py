@@ -84,6 +84,12 @@ def ground(one: Plot) -> BaseGeometry:
     return hulls[0] if len(hulls) == 1 else shapely.union_all(hulls)
 
 
+def centre(one: Plot) -> Vector:
+    """Find the middle of a block's ground."""
+    spot = ground(one).centroid
+    return np.array([spot.x, spot.y])
+
+
 def about(turn_rad: float, pivot_m: Vector, target_m: Vector) -> Move:
     """Turn about a pivot and bring it to a target."""
     turn = float((turn_rad + np.pi) % (2 * np.pi) - np.pi)
