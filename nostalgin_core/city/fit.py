@@ -23,6 +23,8 @@ from nostalgin_core.city.plot import Move, Vector, about, carried
 MOST_POINTS = 160  # along an outline
 REACHES_M = (25.0, 8.0, 3.0)  # s, from first guess to last
 ROUNDS = 6  # at each
+YARD_M = 6.0  # further inside its hull, an outline goes round a yard
+LEAST_OUTER = 0.3  # of an outline
 NEAR_M = 3.0  # an outline's point that a ring passes this close agrees with it
 FAR_M = 10.0  # beyond, one counts no more
 
@@ -70,15 +72,23 @@ def nearest(turns_rad: Sequence[float], turn_rad: float) -> float:
 
 
 def along(outline_m: Sequence[Part]) -> Spots:
-    """Take points along an outline, equally far apart."""
+    """Take points along an outline, equally far apart, but none round its yards.
+
+    A yard that is open to the street makes an outline go in and out again: what lies
+    further inside its hull is left out, if something remains.
+    """
     lines = [shapely.LinearRing(part) for part in outline_m]
+    hulls = [shapely.boundary(shapely.convex_hull(line)) for line in lines]
     whole = sum(line.length for line in lines)
     step = max(whole / MOST_POINTS, 1e-9)
-    points = [
-        shapely.get_coordinates(line.interpolate(np.arange(0.0, line.length, step)))
-        for line in lines
-    ]
-    return np.concatenate(points)
+    points, inside = [], []
+    for line, hull in zip(lines, hulls, strict=True):
+        spots = line.interpolate(np.arange(0.0, line.length, step))
+        points.append(shapely.get_coordinates(spots))
+        inside.append(shapely.distance(spots, hull))
+    outer = np.concatenate(inside) < YARD_M
+    every = np.concatenate(points)
+    return every[outer] if outer.mean() > LEAST_OUTER else every
 
 
 def _lengthwise(parts_m: Sequence[Part]) -> float:
