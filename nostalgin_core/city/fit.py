@@ -20,12 +20,13 @@ from jaxtyping import Float
 
 from nostalgin_core.city.plot import Move, Vector, about, carried
 
-MOST_POINTS = 160  # along an outline
+MOST_POINTS = 120  # along an outline
 REACHES_M = (25.0, 8.0, 3.0)  # s, from first guess to last
 ROUNDS = 6  # at each
 YARD_M = 6.0  # further inside its hull, an outline goes round a yard
 LEAST_OUTER = 0.3  # of an outline
 NEAR_M = 3.0  # an outline's point that a ring passes this close agrees with it
+STILL_M, STILL_RAD = 1e-3, 1e-5  # a step that is smaller is the last at its reach
 FAR_M = 10.0  # beyond, one counts no more
 
 Segments = Float[np.ndarray, "s 2 2"]
@@ -115,7 +116,10 @@ def _settled(sides: Segments, points: Spots, turn_rad: float) -> Fit:
     move = about(turn_rad, *_boxed(sides, points, turn_rad))
     for reach in REACHES_M:
         for _ in range(ROUNDS):
+            before = move
             move = _nearer(move, sides, points, reach)
+            if _same(before, move):
+                break
     apart = np.linalg.norm(points - _closest(_there(move, sides), points)[0], axis=1)
     return Fit(
         move,
@@ -123,6 +127,12 @@ def _settled(sides: Segments, points: Spots, turn_rad: float) -> Fit:
         agreeing=float((apart < NEAR_M).mean()),
         cost_m=float(np.minimum(apart, FAR_M).mean()),
     )
+
+
+def _same(a: Move, b: Move) -> bool:
+    """Tell whether a step was too small to go on."""
+    shift = abs(a.east_m - b.east_m) + abs(a.north_m - b.north_m)
+    return abs(a.turn_rad - b.turn_rad) < STILL_RAD and shift < STILL_M
 
 
 def _boxed(sides: Segments, points: Spots, turn_rad: float) -> tuple[Vector, Vector]:
