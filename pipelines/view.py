@@ -166,11 +166,16 @@ def shown(address: str) -> bool:
     screen = sys.platform in ("darwin", "win32") or any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     )
-    return sys.stdout.isatty() and screen and webbrowser.open(address)
+    if not (sys.stdout.isatty() and screen):
+        return False
+    try:
+        return webbrowser.open(address)
+    except (webbrowser.Error, OSError):  # none is found, or it does not start
+        return False
 
 
 def view(city: Path, *, port: int = 0, browser: bool = True) -> None:
-    """Serve a city until it is interrupted.
+    """Name a city's address, then serve it until it is interrupted.
 
     Raises:
         NoSiteError: if the city has no site.
@@ -180,7 +185,7 @@ def view(city: Path, *, port: int = 0, browser: bool = True) -> None:
         address = address_of(running)
         with contextlib.suppress(OSError):  # whoever gave the port knows it
             print(address, flush=True)  # noqa: T201
-        if browser:
-            shown(address)
+        if browser:  # one in a terminal ends only when its reader does
+            threading.Thread(target=shown, args=(address,), daemon=True).start()
         with contextlib.suppress(KeyboardInterrupt):
             running.serve_forever()

@@ -1,10 +1,30 @@
-"""Blocks take their places by the streets between them, as 3D Tiles.
+"""Blocks take their places by outlines, points or the streets between them.
 
-In: outlines and fronts of each block. Out: its `Move`, and a tileset.
-Paper: section 3.5, there "a trivial extension". Open `city` first.
+In: outlines and fronts of each block, and what is told of its place on the globe. Out:
+its `Move`, and a tileset. Paper: section 3.5, there "a trivial extension". Open `city`
+first, then `anchor`.
 """
 
-from nostalgin_core.city.city import Move, places, plot
+from nostalgin_core.city.anchor import Anchor, Settled, anchored, overlaps
+from nostalgin_core.city.city import places
+from nostalgin_core.city.globe import bearing_of, on_globe
+from nostalgin_core.city.plot import Move, Plot, plot
 from nostalgin_core.city.tileset import Place, Tile, tileset
+from nostalgin_core.city.united import united
 
-__all__ = ["Move", "Place", "Tile", "places", "plot", "tileset"]
+__all__ = [
+    "Anchor",
+    "Move",
+    "Place",
+    "Plot",
+    "Settled",
+    "Tile",
+    "anchored",
+    "bearing_of",
+    "on_globe",
+    "overlaps",
+    "places",
+    "plot",
+    "tileset",
+    "united",
+]

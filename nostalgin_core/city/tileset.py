@@ -7,6 +7,7 @@ is turned to it by the reader. Matrices are written column by column.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -38,13 +39,13 @@ class Tile:
     high_m: tuple[float, float, float]
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
     place: Place | None = None  # in place of origin_m, where it is known
-    turn_rad: float = 0.0  # of its frame in the city's, anticlockwise
+    turn_rad: float = 0.0  # of its frame against east, anticlockwise
 
 
 def ecef_from_enu(place: Place) -> Matrix4:
     """Carry east-north-up metres at a place to the earth-centred frame EPSG:4978."""
-    to_ecef = Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
-    origin = to_ecef.transform(place.longitude_deg, place.latitude_deg, place.height_m)
+    degrees = (place.longitude_deg, place.latitude_deg)
+    origin = _to_ecef().transform(*degrees, place.height_m)
     lon, lat = np.radians([place.longitude_deg, place.latitude_deg])
     (sin_lon, sin_lat), (cos_lon, cos_lat) = np.sin([lon, lat]), np.cos([lon, lat])
     east = (-sin_lon, cos_lon, 0.0)
@@ -99,10 +100,9 @@ def city_from_block(tile: Tile, place: Place | None) -> Matrix4:
     if tile.place is not None:
         if place is None:
             raise ValueError(f"{tile.uri} has a place on the globe, its city has none")
-        return np.linalg.inv(ecef_from_enu(place)) @ ecef_from_enu(tile.place)
-    matrix = np.eye(4)
-    cos, sin = np.cos(tile.turn_rad), np.sin(tile.turn_rad)
-    matrix[:2, :2] = [[cos, -sin], [sin, cos]]
+        there = np.linalg.inv(ecef_from_enu(place)) @ ecef_from_enu(tile.place)
+        return there @ _turned(tile.turn_rad)
+    matrix = _turned(tile.turn_rad)
     matrix[:2, 3] = tile.origin_m
     return matrix
 
@@ -137,6 +137,18 @@ def _leaf(tile: Tile, frame: Matrix4) -> Json:
         "geometricError": 0.0,
         "content": {"uri": tile.uri},
     }
+
+
+def _turned(turn_rad: float) -> Matrix4:
+    matrix = np.eye(4)
+    cos, sin = np.cos(turn_rad), np.sin(turn_rad)
+    matrix[:2, :2] = [[cos, -sin], [sin, cos]]
+    return matrix
+
+
+@cache  # making one takes a millisecond, and a city has thousands of blocks
+def _to_ecef() -> Transformer:
+    return Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
 
 
 def _columns(matrix: Matrix4) -> list[float]:

@@ -15,7 +15,7 @@ from apache_beam.options.pipeline_options import PipelineOptions, StandardOption
 from apache_beam.runners.runner import PipelineResult
 
 from nostalgin_core.records import Rejection
-from pipelines import site
+from pipelines import index, site
 from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
@@ -102,7 +102,9 @@ def made(
     schemes = [one for one in ours.allow_schemes.split(",") if one]
     found = manifest.rewrite(store, manifest.read(store))
     found = located(found, store.root, schemes)
-    for warning in found.warnings:
+    names = {row.front.block for row in found.rows if row.front is not None}
+    anchors = index.load(store, sorted(names, key=manifest.natural))
+    for warning in (*found.warnings, *anchors.warnings):
         tell("warning", f"warning: {warning}", warning=warning)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORKS:
@@ -115,7 +117,7 @@ def made(
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
     asked = " ".join([ours.shard, *schemes])
-    run = runs.run_id(found.sha256, bench.versions, asked)
+    run = runs.run_id(found.sha256 + anchors.sha256, bench.versions, asked)
     counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
@@ -134,7 +136,8 @@ def made(
         if shard != (1, 1) or not report.blocks:
             return report
         try:
-            return published(bench, found, report, tell, anyway=ours.publish_anyway)
+            anyway = ours.publish_anyway
+            return published(bench, found, anchors, report, tell, anyway=anyway)
         except Damaged:
             spoiled = site.damaged(store, run, bench.versions)
             for path in spoiled:
@@ -144,7 +147,13 @@ def made(
 
 
 def published(
-    bench: Bench, found: Manifest, report: Report, tell: Tell, *, anyway: bool
+    bench: Bench,
+    found: Manifest,
+    anchors: index.Anchors,
+    report: Report,
+    tell: Tell,
+    *,
+    anyway: bool,
 ) -> Report:
     """Publish a run, unless it shows less than what is published already.
 
@@ -160,7 +169,10 @@ def published(
         )
         tell("held", words, shown=report.shown_share, before=better)
         return replace(report, held=True)
-    site.publish(store, report.run, bench.versions, found.rows, title=found.title)
+    told = {"title": found.title, "anchors": anchors}
+    notes = site.publish(store, report.run, bench.versions, found.rows, **told)
+    for doubt in notes:
+        tell("warning", f"warning: {doubt}", warning=doubt)
     remember(store, report)
     if "://" in store.root:
         words = f"no site was written: build {store.root} where it is mounted"

@@ -55,8 +55,9 @@ def demo_command(
     told(str(folder), beam=beam)  # a mistyped option is told before anything is painted
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
-        named = {"credit": CREDIT, "title": TITLE}
-        made = index.index(photos, listed, str(folder), force=True, **named)
+        made = index.index(
+            photos, listed, str(folder), force=True, credit=CREDIT, title=TITLE
+        )
     except OSError as problem:
         raise unwritable(folder, problem) from problem
     for warning in made.warnings:

@@ -18,6 +18,8 @@ Examples:
   nostalgin index photos --catalogue list.csv -o city --block 993
 
   nostalgin index photos -o city --title "Midtown, 1940"
+
+  nostalgin index photos --catalogue list.csv -o city --outlines footprints.geojson
 """
 
 
@@ -38,6 +40,25 @@ def index_command(
     force: Annotated[
         bool, typer.Option("--force", help="Replace a mended manifest; a copy is kept.")
     ] = False,
+    outlines: Annotated[
+        Path | None,
+        typer.Option(help="GeoJSON or CityJSON of buildings or blocks, with a key."),
+    ] = None,
+    outline_key: Annotated[
+        str, typer.Option(help="The property of an outline that names its block.")
+    ] = "",
+    outline_crs: Annotated[
+        str, typer.Option(help="The outlines' reference system, as EPSG:2263.")
+    ] = "",
+    places: Annotated[
+        Path | None, typer.Option(help="CSV with block, lon, lat and maybe bearing.")
+    ] = None,
+    place: Annotated[
+        str, typer.Option(help="LAT,LON,BEARING of the first block, for a whole city.")
+    ] = "",
+    streets: Annotated[
+        Path | None, typer.Option(help="CSV with street and width_m.")
+    ] = None,
     json_lines: JsonLines = False,
 ) -> None:
     """Write a city folder's manifest: which photo shows which fronts, in what order.
@@ -50,10 +71,17 @@ def index_command(
 
     voice = Voice(errors, machine=json_lines)
     named = {"credit": credit, "title": title}
+    told = index.Asked(outlines, outline_key, outline_crs, places, place, streets)
     try:
         with held(Store(city)):
             made = index.index(
-                photos, catalogue, city, blocks=block or (), force=force, **named
+                photos,
+                catalogue,
+                city,
+                blocks=block or (),
+                force=force,
+                places=told,
+                **named,
             )
     except (index.Nothing, Busy) as problem:
         raise fail(str(problem)) from problem

@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import typer
 
-from pipelines.cli import build, demo, explain, index, report, view
+from pipelines.cli import build, demo, explain, index, report, publish, view
 from pipelines.console import opened_streams
 from pipelines.evaluate import commands
 
@@ -34,6 +34,7 @@ app.command("index", epilog=index.EXAMPLES)(index.index_command)
 app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
     build.build_command
 )
+app.command("publish", epilog=publish.EXAMPLES)(publish.publish_command)
 app.command("view", epilog=view.EXAMPLES)(view.view_command)
 app.command("demo", epilog=demo.EXAMPLES, context_settings=TO_BEAM)(demo.demo_command)
 app.command("report", epilog=report.EXAMPLES)(report.report_command)

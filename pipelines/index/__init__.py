@@ -4,8 +4,18 @@ In: files and CSV. Out: `manifest.csv` and `.parquet`; then photos and blocks to
 Open `index` first, then `manifest`.
 """
 
+from pipelines.index.anchors import Anchors, Asked, load
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
 from pipelines.index.title import cleaned, of_folder
 
-__all__ = ["Indexed", "Nothing", "cleaned", "index", "of_folder"]
+__all__ = [
+    "Anchors",
+    "Asked",
+    "Indexed",
+    "Nothing",
+    "cleaned",
+    "index",
+    "load",
+    "of_folder",
+]

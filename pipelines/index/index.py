@@ -14,6 +14,7 @@ from nostalgin_core.catalogue import Catalogue, Entry, from_file_name
 from nostalgin_core.records import Front, Rejection
 from pipelines import bounded
 from pipelines.index import comma, manifest
+from pipelines.index.anchors import Asked, taken
 from pipelines.index.cells import MOST_FRONTS
 from pipelines.index.images import Nothing, images, spelt_out
 from pipelines.index.title import cleaned
@@ -52,12 +53,14 @@ def index(
     credit: str = "",
     title: str = "",
     force: bool = False,
+    places: Asked | None = None,
 ) -> Indexed:
     """Write a city folder's manifest; without a `title` its folder's name is shown.
 
     Without a catalogue the file names tell block and lot; where they don't, the photos
     of a folder stand in one row, in the order of their names. A manifest that people
-    have mended is replaced by `force` alone, and a copy of it is kept.
+    have mended is replaced by `force` alone, and a copy of it is kept. What an earlier
+    one was told of `places` stays, unless this one is told anew.
 
     Raises:
         Nothing: if there are no photos, no row of the catalogue makes sense, or a
@@ -72,6 +75,8 @@ def index(
     entries, crowded = sparse(read.entries)
     wanted = of_blocks(entries, blocks, crowded, where=listed or photos)
     fronts, doubts = catalogue.fronts(wanted)
+    named = {front.block for front in fronts}
+    files, placeless = taken(places or Asked(), sorted(named, key=manifest.natural))
     shown, strangers = catalogue.matched(entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
     root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
@@ -82,10 +87,12 @@ def index(
     ]
     kept = [] if mended is None else [copied(store, *mended)]
     manifest.write(store, cells, title=cleaned(title))
+    for name, data in files.items():
+        store.write_bytes(name, data)
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
         fronts=len(fronts),
-        blocks=len({front.block for front in fronts}),
+        blocks=len(named),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
         rejections=(
@@ -94,7 +101,12 @@ def index(
             *crowded,
             *(strangers if not blocks else ()),
         ),
-        warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts, *kept),
+        warnings=(
+            *about(read.warnings, {e.row for e in wanted}),
+            *doubts,
+            *placeless,
+            *kept,
+        ),
     )
 
 

@@ -4,18 +4,20 @@ In: a run's tables and models. Out: `CITY/site`, and the pointer to the run.
 Open `publish` first.
 """
 
-from pipelines.site.folder import Foreign
+from pipelines.site.folder import Folder, Foreign, recorded
 from pipelines.site.publish import CURRENT, claim, damaged, publish
 from pipelines.site.record import record
 from pipelines.site.site import ViewerMissingError, thumbnail
 
 __all__ = [
     "CURRENT",
+    "Folder",
     "Foreign",
     "ViewerMissingError",
     "claim",
     "damaged",
     "publish",
     "record",
+    "recorded",
     "thumbnail",
 ]

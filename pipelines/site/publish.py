@@ -8,15 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
-from nostalgin_core import city
-from pipelines.index import cleaned, of_folder
+from pipelines.index import Anchors, cleaned, of_folder
 from pipelines.index.manifest import natural
 from pipelines.index.roots import rooted
 from pipelines.index.row import Row
 from pipelines.site import site
 from pipelines.site.folder import written
+from pipelines.site.placing import Placing, placing, spot
 from pipelines.store import Damaged, Store, runs
 from pipelines.store.versions import Versions
 
@@ -35,29 +33,52 @@ def claim(store: Store) -> None:
 
 
 def publish(
-    store: Store, run: str, versions: Versions, rows: Sequence[Row], *, title: str = ""
-) -> None:
+    store: Store,
+    run: str,
+    versions: Versions,
+    rows: Sequence[Row],
+    *,
+    title: str = "",
+    anchors: Anchors | None = None,
+) -> tuple[str, ...]:
     """Write the site of a run that has blocks, and only then point at the run.
 
     Without a `title` the city is called after its folder. A store elsewhere gets the
     pointer alone: `nostalgin build` on a machine that mounts it writes the site.
+    Returns what is doubtful about the blocks' places.
 
     Raises:
         Damaged: if an artifact is, before anything is written.
     """
+    notes: tuple[str, ...] = ()
     if "://" not in store.root:
         folder, blocks = Path(store.root), runs.read_table(store, run, "blocks")
+        placed = placing(records(blocks), rows, anchors or Anchors())
+        runs.write_table(store, run, "places", placed.rows)
+        notes = placed.notes
         site.assemble(
             folder / SITE,
-            blocks=models(store, run, blocks, rows),
+            blocks=models(store, run, blocks, rows, placed),
             photos=Thumbnails(store, run, versions),
             title=cleaned(title) or of_folder(folder.resolve().name),
+            place=placed.origin,
         )
     store.write_bytes(CURRENT, f"{run}\n".encode())
+    return notes
+
+
+def records(blocks: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Read what is told of each block, in the order of their numbers."""
+    ordered = sorted(blocks, key=lambda row: natural(row["block"]))
+    return [json.loads(row["record"]) for row in ordered]
 
 
 def models(
-    store: Store, run: str, blocks: list[dict[str, Any]], rows: Sequence[Row]
+    store: Store,
+    run: str,
+    blocks: list[dict[str, Any]],
+    rows: Sequence[Row],
+    placed: Placing,
 ) -> list[site.BlockModel]:
     """Gather the blocks' models, in the order of their numbers."""
     why = reasons(runs.read_table(store, run, "rejections"), rows)
@@ -66,11 +87,11 @@ def models(
     shown = [(row, keys.get((rooted(row.root, store.root), row.photo))) for row in rows]
     taken, whose = of_buildings(shown), credits_of(shown)
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
-    records = [json.loads(row["record"]) for row in ordered]
-    moves = places(records, rows)
+    lying = {row["block"]: row for row in placed.rows}
     made = []
-    for row, record in zip(ordered, records, strict=True):
-        move = moves[row["block"]]
+    for row, record in zip(ordered, records(blocks), strict=True):
+        move = placed.moves[row["block"]]
+        place, turn = placed.spots.get(row["block"], (None, move.turn_rad))
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
             for photo in building["photos"]:  # it says whose the block's photos are
@@ -85,32 +106,15 @@ def models(
             site.BlockModel(
                 name=row["block"],
                 glb=partial(whole, store, row["model"], row["sha256"]),
-                record=record,
+                record=record | {"place": spot(lying[row["block"]])},
                 low_m=tuple(row["low_m"]),
                 high_m=tuple(row["high_m"]),
                 origin_m=(move.east_m, move.north_m),
-                turn_rad=move.turn_rad,
+                place=place,
+                turn_rad=turn,
             )
         )
     return made
-
-
-def places(records: list[dict[str, Any]], rows: Sequence[Row]) -> dict[str, city.Move]:
-    """Place the blocks by the streets that their fronts share."""
-    fronts: dict[str, dict[str, Any]] = defaultdict(dict)
-    for row in rows:
-        if row.front is not None:
-            fronts[row.front.block].setdefault(row.front.front_id, row.front)
-    return city.places(
-        [
-            city.plot(
-                record["block"],
-                [np.array(outline) for outline in record["outline_m"]],
-                list(fronts[record["block"]].values()),
-            )
-            for record in records
-        ]
-    )
 
 
 def of_buildings(

@@ -61,7 +61,7 @@ class BlockModel:
     high_m: tuple[float, float, float]
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
     place: city.Place | None = None  # in place of origin_m, where it is known
-    turn_rad: float = 0.0  # of its frame in the city's, anticlockwise
+    turn_rad: float = 0.0  # of its frame against east, anticlockwise
 
 
 def assemble(

@@ -1,6 +1,7 @@
 """What one run knows, as tables: references and reasons, never pixels.
 
-    CITY/runs/<run id>/{photos,facades,buildings,blocks,rejections}.parquet, run.json
+    CITY/runs/<run id>/{photos,facades,buildings,blocks,places,rejections}.parquet
+    CITY/runs/<run id>/run.json
 
 The run's id is a hash of what was asked for, so a run that is repeated writes the same
 tables to the same place. Clock times are in run.json alone.
@@ -63,12 +64,25 @@ BLOCKS: Final = columns(
     credit=TEXT,
     record=TEXT,  # what the viewer tells of it, as JSON
 )
+PLACES: Final = columns(
+    block=TEXT,
+    how=TEXT,  # by its outline, a point, or its streets alone
+    longitude_deg=NUMBER,  # of its frame's origin
+    latitude_deg=NUMBER,
+    bearing_deg=NUMBER,  # of its first side, block on the left hand
+    east_m=NUMBER,  # in the city's plane
+    north_m=NUMBER,
+    turn_rad=NUMBER,
+    misfit_m=NUMBER,  # from its outline, in the median
+    note=TEXT,
+)
 REJECTIONS: Final = tables.schema(Rejection)
 SCHEMAS: Final = {
     "photos": PHOTOS,
     "facades": FACADES,
     "buildings": BUILDINGS,
     "blocks": BLOCKS,
+    "places": PLACES,  # of a run that was published
     "rejections": REJECTIONS,
 }
 
