@@ -108,13 +108,14 @@ def made(
     for network in NETWORKS:
         models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
-    bench = Bench(store, Versions.present(models), models, limits, ours.retry)
+    form = "png" if ours.no_webp else "webp"
+    bench = Bench(store, Versions.present(models), models, limits, ours.retry, form)
     todo = plan(found.rows, city=ours.city, shard=shard)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    asked = " ".join([ours.shard, *schemes])
+    asked = " ".join([ours.shard, *schemes, *(["png"] if ours.no_webp else [])])
     run = runs.run_id(found.sha256, bench.versions, asked)
     counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
