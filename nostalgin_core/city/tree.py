@@ -21,6 +21,7 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float
 
+from nostalgin_core import model
 from nostalgin_core.city.groups import MOST, Group, grouped
 from nostalgin_core.city.tileset import (
     MARGIN_M,
@@ -37,7 +38,6 @@ from nostalgin_core.city.tileset import (
     leaf,
 )
 from nostalgin_core.city.volumes import Lump, joined, lump, smaller_sides, stood
-from nostalgin_core.model import massing
 
 INLINE = MOST * MOST  # blocks, up to which one file tells all
 
@@ -165,9 +165,9 @@ def _massing(city: _City, group: Group) -> bytes:
     """Draw the volumes of what lies two levels below."""
     if group.blocks:
         own = [stood(city.tiles[n], city.frames[n]) for n in group.blocks]
-        return massing(own, extras={"volumes": "buildings"})
+        return model.massing(own, extras={"volumes": "buildings"})
     lumps = [one.volume for one in _grandchildren(city, group)]
-    return massing(lumps, extras={"volumes": "blocks"})
+    return model.massing(lumps, extras={"volumes": "blocks"})
 
 
 def _error(city: _City, group: Group) -> float:

@@ -98,8 +98,8 @@ def joined(lumps: Sequence[Lump]) -> Lump:
 def hull(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     """Find the convex outline of points seen from above, on their lowest ground."""
     flat = shapely.MultiPoint(points[:, :2]).convex_hull
-    if not isinstance(flat, shapely.Polygon):  # all on a line, or at one point
+    if flat.geom_type != "Polygon":  # all on a line, or at one point
         flat = flat.buffer(0.5, quad_segs=1).convex_hull
-    ring = np.array(shapely.normalize(flat).exterior.coords)[:-1]
+    ring = shapely.get_coordinates(shapely.normalize(flat))[:-1]
     ring = ring if shapely.LinearRing(ring).is_ccw else ring[::-1]
     return np.column_stack([ring, np.full(len(ring), points[:, 2].min())])

@@ -54,9 +54,10 @@ def carried(uvs: UVs, fine: Atlas, coarse: Atlas) -> UVs:
     slack = 1e-3  # of a texel; tiles lie sixteen apart
     low, high = fines[:, :2] - slack, fines[:, 2:] + slack
     inside = (points[:, None] >= low) & (points[:, None] <= high)
-    whole = inside.all(axis=2)
-    if not whole.any(axis=1).all():
-        astray = uvs[~whole.any(axis=1)][0]
+    whole = np.logical_and(inside[..., 0], inside[..., 1])
+    found = np.count_nonzero(whole, axis=1) > 0
+    if not found.all():
+        astray = uvs[~found][0]
         raise ValueError(f"texture coordinate {astray.tolist()} lies in no tile")
     tile = np.argmax(whole, axis=1)
     spans = fines[tile, 2:] - fines[tile, :2]
@@ -73,7 +74,8 @@ def texel_m(mesh: Mesh, atlas: Atlas) -> float:
     largest = 0.0
     edges = _edges(atlas)[: len(atlas.tiles)]
     middle = uvs.mean(axis=1)[:, None]
-    worn = ((middle >= edges[:, :2]) & (middle <= edges[:, 2:])).all(axis=2).any(axis=1)
+    inside = (middle >= edges[:, :2]) & (middle <= edges[:, 2:])
+    worn = np.count_nonzero(inside[..., 0] & inside[..., 1], axis=1) > 0
     for start, end in ((0, 1), (1, 2), (2, 0)):
         metres = np.linalg.norm(corners[:, end] - corners[:, start], axis=1)
         texels = np.linalg.norm(uvs[:, end] - uvs[:, start], axis=1)

@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import typer
 
-from pipelines.cli import build, demo, explain, index, view
+from pipelines.cli import build, demo, explain, export, index, view
 from pipelines.console import opened_streams
 from pipelines.evaluate import commands
 
@@ -35,6 +35,7 @@ app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
     build.build_command
 )
 app.command("view", epilog=view.EXAMPLES)(view.view_command)
+app.command("export", epilog=export.EXAMPLES)(export.export_command)
 app.command("demo", epilog=demo.EXAMPLES, context_settings=TO_BEAM)(demo.demo_command)
 app.add_typer(commands.app, name="evaluate")
 

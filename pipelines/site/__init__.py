@@ -4,18 +4,21 @@ In: a run's tables and models. Out: `CITY/site`, and the pointer to the run.
 Open `publish` first.
 """
 
-from pipelines.site.folder import Foreign
+from pipelines.site.folder import Folder, Foreign, inside
 from pipelines.site.publish import CURRENT, claim, damaged, publish
 from pipelines.site.record import record
-from pipelines.site.site import ViewerMissingError, thumbnail
+from pipelines.site.site import ViewerMissingError, safe, thumbnail
 
 __all__ = [
     "CURRENT",
+    "Folder",
     "Foreign",
     "ViewerMissingError",
     "claim",
     "damaged",
+    "inside",
     "publish",
     "record",
+    "safe",
     "thumbnail",
 ]

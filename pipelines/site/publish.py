@@ -75,7 +75,7 @@ def models(
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
             for photo in building["photos"]:  # it says whose the block's photos are
-                photo |= whose.get(photo["key"], {})
+                photo.update(whose.get(photo["key"], {}))
             there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo

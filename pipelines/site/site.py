@@ -126,7 +126,11 @@ def assemble(
         ],
     }
     assets = {f"assets/{p.name}": p for p in sorted((viewer / "assets").iterdir())}
-    far = {uri: one.coarse for uri, one in zip(coarse, blocks, strict=True) if uri}
+    far = {
+        uri: one.coarse
+        for uri, one in zip(coarse, blocks, strict=True)
+        if one.coarse is not None
+    }
     names = [*assets, *files.values(), *models, *far, *tree.files]
     site = Folder(destination, [*names, "index.html", named, *SWAPPED])
     for name, path in assets.items():

@@ -21,7 +21,7 @@ MIDTOWN = Place(-73.9868, 40.7549, 12.0)
 Json = dict[str, Any]
 
 
-def blocks(count: int, *, place: Place | None = None) -> list[Tile]:
+def blocks(count: int) -> list[Tile]:
     """Lay out blocks in streets and avenues, each turned by a little."""
     rng = np.random.default_rng(count)
     across = int(np.ceil(np.sqrt(count)))
