@@ -44,10 +44,10 @@ def archive(shown: Shown, name: str, *, told: Mapping[str, Any]) -> bytes:
 
 
 def _obj(shown: Shown, name: str) -> str:
-    lines = [HEAD.format(name), f"mtllib {name}.mtl\n", "usemtl photograph\n"]
+    lines = [HEAD.format(name), f"mtllib {name}.mtl\n"]
     vertex = 1
     for number, shell in enumerate(shown.shells):
-        lines.append(f"o {_word(shell.name) or number}\n")
+        lines.append(f"o {_word(shell.name) or number}\nusemtl photograph\n")
         for one in shell.surfaces:
             east, north, up = one.corners_m.T
             rows = np.column_stack([east, up, -north]) + 0.0

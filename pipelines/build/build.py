@@ -121,7 +121,7 @@ def made(
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
-    note(store, run, options, began)  # a folder that can't be written to is told now
+    note(bench, run, options, began)  # a folder that can't be written to is told now
     near = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
@@ -129,7 +129,7 @@ def made(
             result = launched(options, todo, found, bench, run)
         check(store, run, todo)
         done = stages(result)
-        note(store, run, options, began, done)
+        note(bench, run, options, began, done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
         if shard != (1, 1) or not report.blocks:
@@ -242,13 +242,15 @@ def write(built: Built, bench: Bench, run: str) -> None:
 
 
 def note(
-    store: Store,
+    bench: Bench,
     run: str,
     options: PipelineOptions,
     began: float,
     done: dict[str, dict[str, int]] | None = None,
 ) -> None:
-    """Write when the run was and what it took: the only file with clock times.
+    """Write when the run was, what made it, and what it took.
+
+    It is the only file with clock times.
 
     Until the run is done it tells only when it began.
     """
@@ -257,11 +259,12 @@ def note(
         "run": run,
         "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
         "options": {name: str(value) for name, value in given.items()},
+        "versions": vars(bench.versions),
     }
     if done is not None:
         told |= {"seconds": round(time.time() - began, 1), "stages": done}
     text = json.dumps(told, indent=1, sort_keys=True) + "\n"
-    store.write_bytes(f"runs/{run}/run.json", text.encode())
+    bench.store.write_bytes(f"runs/{run}/run.json", text.encode())
 
 
 def stages(result: PipelineResult) -> dict[str, dict[str, int]]:

@@ -3,9 +3,11 @@
 The same run gives the same bytes: clock times stand in its run.json alone.
 """
 
+import contextlib
 import hashlib
+import json
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import pyarrow as pa
 
@@ -32,9 +34,10 @@ def read(city: Path, site: Published) -> Json:
     store = Store(str(city))
     try:
         run = store.read_bytes(CURRENT).decode().strip()
-        names = ("photos", "buildings", "blocks", "facades")
+        noted = json.loads(store.read_bytes(f"runs/{run}/run.json"))
+        names = ("photos", "buildings", "blocks")
         told = {name: runs.read_table(store, run, name) for name in names}
-    except (OSError, Damaged, pa.ArrowException, UnicodeDecodeError) as problem:
+    except (OSError, Damaged, pa.ArrowException, ValueError) as problem:
         words = f"{city} has no tables of what was built: build it again ({problem})"
         raise Unexportable(words) from problem
     for block in site.blocks:
@@ -42,7 +45,7 @@ def read(city: Path, site: Published) -> Json:
         row = next((o for o in told["blocks"] if o["block"] == block["name"]), None)
         if row is None or row["sha256"] != sha256:
             raise Unexportable(f"{block['uri']} is not of run {run}: build again")
-    return Writer(run, told).written(manifests(city))
+    return Writer(run, told, noted).written(manifests(city))
 
 
 def manifests(city: Path) -> dict[str, str]:
@@ -58,9 +61,9 @@ def manifests(city: Path) -> dict[str, str]:
 class Writer:
     """A run's tables, while they become a PROV document."""
 
-    def __init__(self, run: str, told: dict[str, list[Json]]) -> None:
+    def __init__(self, run: str, told: dict[str, list[Json]], noted: Json) -> None:
         """Begin with nothing but the program."""
-        self._run, self._told = f"run:{run}", told
+        self._run, self._told, self._noted = f"run:{run}", told, noted
         self._keys = {(one["root"], one["name"]): one["key"] for one in told["photos"]}
         self._said: dict[str, Json] = {
             "prefix": dict(PREFIXES),
@@ -90,40 +93,30 @@ class Writer:
         self._say("used", activity=self._run, entity=name)
 
     def _stages(self) -> None:
-        """Tell each stage's version and parameters, and the network it asked."""
-        from pipelines.store.versions import PARAMETERS, Versions
+        """Tell each stage's version, and of a version that is present all it says.
 
-        try:
-            models = Models(str(PACKAGED))
-            present: Any = vars(Versions.present(models))
-        except Unlocked:
-            models, present = None, {}
-        made_by = self._versions()
+        A version is a hash of parameters and network, so equal ones have equal both.
+        """
+        from pipelines.store.versions import PARAMETERS, version
+
+        models = Models(self._noted.get("options", {}).get("models") or str(PACKAGED))
         for stage in STAGES:
             name = f"stage:{stage}"
-            version = made_by.get(stage, "")
-            same = bool(version) and present.get(stage) == version
-            told = {"prov:label": stage, "nostalgin:version": version}
-            if same:
-                told["nostalgin:parameters"] = PARAMETERS[stage]
+            made_by = self._noted.get("versions", {}).get(stage, "")
+            told = {"prov:label": stage, "nostalgin:version": made_by}
+            with contextlib.suppress(Unlocked):  # networks that were moved away since
+                if version(stage, models) == made_by:
+                    told["nostalgin:parameters"] = PARAMETERS[stage]
+                    if stage in NETWORKS:
+                        self._network(stage, models.sha256(stage))
             self._said["activity"][name] = told
             self._say("wasInformedBy", informed=self._run, informant=name)
-            if same and models is not None and stage in NETWORKS:
-                self._network(stage, models.sha256(stage))
 
     def _network(self, stage: str, sha256: str) -> None:
         entity = f"network:{stage}.onnx"
         label = {"prov:label": f"{stage}.onnx", "nostalgin:sha256": sha256}
         self._said["entity"][entity] = label
         self._say("used", activity=f"stage:{stage}", entity=entity)
-
-    def _versions(self) -> dict[str, str]:
-        """Read the versions of the stages off the artifacts that the run names."""
-        paths = [one["model"] for one in self._told["blocks"][:1]]
-        paths += [one["elevations"] for one in self._told["facades"][:1]]
-        worn = [p for one in self._told["buildings"] for p in one["elevations"]]
-        found = [path.split("/") for path in (*paths, *worn[:1])]
-        return {parts[1]: parts[2] for parts in found if len(parts) > 2}
 
     def _block(self, row: Json) -> None:
         name = model_of(row["block"])
