@@ -4,7 +4,7 @@ In: `CITY/site`, and for its provenance the run's tables. Out: a folder a format
 Open `export` first.
 """
 
-from pipelines.formats.export import FORMATS, export
+from pipelines.formats.export import export
 from pipelines.formats.published import Unexportable
 
-__all__ = ["FORMATS", "Unexportable", "export"]
+__all__ = ["Unexportable", "export"]

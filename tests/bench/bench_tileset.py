@@ -44,7 +44,7 @@ def tilesets() -> None:
         flat = flat_bytes(tiles)
         print(
             f"{count:6} {first:12,} {first + sum(map(len, texts)):13,} "
-            f"{sum(map(len, volumes)):9,} {flat:12,} {first / flat:12.3f} {seconds:5.1f}"
+            f"{sum(map(len, volumes)):9,} {flat:9,} {first / flat:9.3f} {seconds:4.1f}"
         )
 
 
@@ -78,7 +78,8 @@ def painted(buildings: int) -> None:
                 Path(folder) / "site", blocks=city, photos={}, title="", viewer=viewer
             )
             seconds = time.perf_counter() - began
-            size = sum(p.stat().st_size for p in Path(folder).rglob("*") if p.is_file())
+            files = [p for p in Path(folder).rglob("*") if p.is_file()]
+            size = sum(p.stat().st_size for p in files)
             first = (Path(folder) / "site/tileset.json").stat().st_size
         per_block = 1000 * seconds / number
         print(
