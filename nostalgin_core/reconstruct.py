@@ -52,7 +52,8 @@ def rebuild(
         if isinstance(one.photo, Photo)
         for view in one.elevations
     }
-    glb, _ = model.model(settled, finished, credit=credit)
+    rights = model.Rights(credit)
+    glb = model.model(settled, finished, rights=rights).glb
     photo_rejections = [each for one in made.values() for each in one.rejections]
     return Rebuilt(settled, glb, (*photo_rejections, *settled.rejections))
 

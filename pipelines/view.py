@@ -12,7 +12,11 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 HOST: Final = "127.0.0.1"
-FOREVER: Final = ("/assets/", "/blocks/")  # named by content: they never change
+FOREVER: Final = (
+    "/assets/",
+    "/blocks/",
+    "/far/",
+)  # named by content: they never change
 LONGEST: Final = 1000  # letters of a path; ours have 90
 WAIT_S: Final = 30.0  # for a request, or for whoever reads the answer
 MOST_OPEN: Final = 100  # connections; a browser opens six

@@ -9,7 +9,8 @@ from nostalgin_core.city.anchor import Anchor, Settled, anchored, overlaps
 from nostalgin_core.city.city import places
 from nostalgin_core.city.globe import bearing_of, on_globe
 from nostalgin_core.city.plot import Move, Plot, plot
-from nostalgin_core.city.tileset import Place, Tile, tileset
+from nostalgin_core.city.tileset import Place, Tile, ecef_from_enu
+from nostalgin_core.city.tree import tree
 from nostalgin_core.city.united import united
 
 __all__ = [
@@ -21,10 +22,11 @@ __all__ = [
     "Tile",
     "anchored",
     "bearing_of",
+    "ecef_from_enu",
     "on_globe",
     "overlaps",
     "places",
     "plot",
-    "tileset",
+    "tree",
     "united",
 ]

@@ -1,11 +1,10 @@
-"""A 3D Tiles 1.1 tileset that places blocks on the ground.
+"""The tiles of blocks in a 3D Tiles 1.1 tileset, and where they lie on the ground.
 
 Every block is a tile with its own transform from its east-north-up frame, so that the
 earth's curvature (0.7 m at 3 km) does not tilt it. 3D Tiles' z is up, and glTF content
 is turned to it by the reader. Matrices are written column by column.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -16,9 +15,12 @@ from pyproj import Transformer
 
 Matrix4 = Float[np.ndarray, "4 4"]
 Json = dict[str, Any]
+Footprints = Float[np.ndarray, "n 4 2"]
 Point = tuple[float, float, float] | Float[np.ndarray, " 3"]
 
 MARGIN_M = 0.01  # float32 positions round outwards by less
+# Readers refine where an error covers 16 pixels: then a coarse texel covers four.
+ERROR_OF_TEXEL = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +42,10 @@ class Tile:
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
     place: Place | None = None  # in place of origin_m, where it is known
     turn_rad: float = 0.0  # of its frame against east, anticlockwise
+    coarse_uri: str = ""  # the same block with fewer texels; empty: there is none
+    coarse_texel_m: float = 0.0  # the largest texel of that one
+    footprints_m: Footprints | None = None  # of its buildings, in its own frame
+    heights_m: Float[np.ndarray, " n"] | None = None
 
 
 def ecef_from_enu(place: Place) -> Matrix4:
@@ -54,45 +60,6 @@ def ecef_from_enu(place: Place) -> Matrix4:
     matrix = np.eye(4)
     matrix[:3] = np.column_stack([east, north, up, origin])
     return matrix
-
-
-def tileset(
-    tiles: Sequence[Tile], *, place: Place | None = None, version: str = ""
-) -> Json:
-    """Describe a city: a root without content, and a leaf a block.
-
-    Without a `place` the root has no transform, and the city lies on a plane at the
-    origin. The root's geometric error is the city's diagonal, so that blocks are loaded
-    as soon as the whole city covers about sixteen pixels (the usual threshold).
-
-    Raises:
-        ValueError: if there is no tile, or if a tile has a place and the city has none.
-    """
-    if not tiles:
-        raise ValueError("a city needs at least one block")
-    frames = [city_from_block(tile, place) for tile in tiles]
-    corners = np.concatenate(
-        [
-            carried(frame, box_corners(tile.low_m, tile.high_m))
-            for tile, frame in zip(tiles, frames, strict=True)
-        ]
-    )
-    low, high = corners.min(axis=0) - MARGIN_M, corners.max(axis=0) + MARGIN_M
-    error = float(np.ceil(np.linalg.norm(high - low)))
-    root: Json = {
-        "boundingVolume": {"box": box(low, high)},
-        "geometricError": error,
-        "refine": "ADD",
-        "children": [
-            _leaf(tile, frame) for tile, frame in zip(tiles, frames, strict=True)
-        ],
-    }
-    if place is not None:
-        root["transform"] = _columns(ecef_from_enu(place))
-    asset = {"version": "1.1", "generator": "nostalgin"}
-    if version:
-        asset["tilesetVersion"] = version
-    return {"asset": asset, "geometricError": error, "root": root}
 
 
 def city_from_block(tile: Tile, place: Place | None) -> Matrix4:
@@ -128,14 +95,29 @@ def carried(
     return points_a @ b_from_a[:3, :3].T + b_from_a[:3, 3]
 
 
-def _leaf(tile: Tile, frame: Matrix4) -> Json:
+def leaf(tile: Tile, frame: Matrix4) -> Json:
+    """Write one block's tile: its coarse model if it has one, and the fine one below.
+
+    The geometry of both is the same. What is wrong in the coarse one is as wide as its
+    largest texel; the error that is told is four texels, so that a reader that allows
+    an error of 16 pixels, as most do, takes the fine one where a texel covers four.
+    """
     low = np.asarray(tile.low_m, float) - MARGIN_M / 2
     high = np.asarray(tile.high_m, float) + MARGIN_M / 2
-    return {
-        "transform": _columns(frame),
+    fine: Json = {
         "boundingVolume": {"box": box(low, high)},
         "geometricError": 0.0,
         "content": {"uri": tile.uri},
+    }
+    if not tile.coarse_uri:
+        return {"transform": columns(frame), **fine}
+    return {
+        "transform": columns(frame),
+        "boundingVolume": fine["boundingVolume"],
+        "geometricError": round(ERROR_OF_TEXEL * tile.coarse_texel_m, 3),
+        "refine": "REPLACE",
+        "content": {"uri": tile.coarse_uri},
+        "children": [fine],
     }
 
 
@@ -151,7 +133,8 @@ def _to_ecef() -> Transformer:
     return Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
 
 
-def _columns(matrix: Matrix4) -> list[float]:
+def columns(matrix: Matrix4) -> list[float]:
+    """Write a matrix column by column."""
     return _numbers(matrix.T.ravel())
 
 

@@ -19,6 +19,7 @@ from nostalgin_core.arrays import EvidenceMap, Gray, Mask
 from nostalgin_core.records import Block, Box, Elevation
 
 TileKey = tuple[str, int, int | None]  # photo key, facade, evidence of the whole wall
+Size = tuple[int, int]
 
 LIMIT_PX = 4096  # what every GPU of the last ten years takes
 GUTTER_PX = 8  # keeps tiles apart down to the third mipmap
@@ -182,19 +183,30 @@ def build(
         sizes.append(scaled_sizes([(h, w)], scale=1.0, longest_px=budget)[0])
     sizes += [(PATCH_PX, PATCH_PX)] * len(TONES)
     boxes, shape = layout(sizes, longest_px=longest_px, limit_px=limit_px)
-    atlas = Atlas(
+    atlas = blank(keys, boxes, shape)
+    for key, box in atlas.tiles.items():
+        one = elevations[key]
+        kept = opaque(one)
+        draw(atlas, box, bled(one.image, kept), kept, one.evidence, code=key[2])
+    tone(atlas)
+    return atlas
+
+
+def blank(keys: Sequence[TileKey], boxes: Sequence[Box], shape: Size) -> Atlas:
+    """Make an atlas that shows nothing yet; its patches have the last boxes."""
+    return Atlas(
         image=np.full(shape, TONES[2], np.uint8),
         opacity=np.full(shape, 255, np.uint8),
         evidence=np.full(shape, evidence.ASSUMED, np.uint8),
         tiles=dict(zip(keys, boxes[: len(keys)], strict=True)),
         patches=tuple(boxes[len(keys) :]),
     )
-    for key, box in atlas.tiles.items():
-        _draw(atlas, elevations[key], box, code=key[2])
-    for tone, box in zip(TONES, atlas.patches, strict=True):
-        rows, columns = _with_gutter(box)
-        atlas.image[rows, columns] = tone
-    return atlas
+
+
+def tone(atlas: Atlas) -> None:
+    """Paint the patches of flat gray, gutters included."""
+    for gray, box in zip(TONES, atlas.patches, strict=True):
+        atlas.image[_with_gutter(box)] = gray
 
 
 def _with_gutter(box: Box) -> tuple[slice, slice]:
@@ -204,21 +216,28 @@ def _with_gutter(box: Box) -> tuple[slice, slice]:
     )
 
 
-def _draw(atlas: Atlas, elevation: Elevation, box: Box, *, code: int | None) -> None:
+def draw(
+    atlas: Atlas,
+    box: Box,
+    image: Gray,
+    kept: Mask,
+    codes: EvidenceMap,
+    *,
+    code: int | None = None,
+) -> None:
+    """Scale an image with its opacity and its evidence to a tile, and put it there."""
     size = (box.x1 - box.x0, box.y1 - box.y0)
-    kept = opaque(elevation)
-    image = cv2.resize(bled(elevation.image, kept), size, interpolation=cv2.INTER_AREA)
+    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
     opacity = cv2.resize(kept.astype(np.float32), size, interpolation=cv2.INTER_AREA)
     solid = opacity >= 0.5
-    codes = scaled_codes(elevation.evidence, size)
+    scaled = scaled_codes(codes, size)
     if code is not None:
-        codes = np.full_like(codes, code)
-    codes[solid & (codes == evidence.NOTHING)] = evidence.SOFT_EDGE
-    codes[~solid] = evidence.NOTHING
-    rows, columns = _with_gutter(box)
+        scaled = np.full_like(scaled, code)
+    scaled[solid & (scaled == evidence.NOTHING)] = evidence.SOFT_EDGE
+    scaled[~solid] = evidence.NOTHING
     for target, tile in (
-        (atlas.image, image),
+        (atlas.image, small),
         (atlas.opacity, np.where(solid, 255, 0).astype(np.uint8)),
-        (atlas.evidence, codes),
+        (atlas.evidence, scaled),
     ):
-        target[rows, columns] = np.pad(tile, GUTTER_PX, mode="edge")
+        target[_with_gutter(box)] = np.pad(tile, GUTTER_PX, mode="edge")

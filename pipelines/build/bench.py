@@ -7,6 +7,7 @@ from typing import Any
 import pyarrow as pa
 
 from nostalgin_core import photo
+from nostalgin_core.model import ImageFormat
 from nostalgin_core.records import Photo, Rejection
 from pipelines.build.attempt import Attempt
 from pipelines.build.isolation import Isolation
@@ -28,6 +29,7 @@ class Bench:
     models: Models
     limits: Limits = field(default_factory=Limits)
     retry: bool = False  # what ended its process in an earlier run
+    image_format: ImageFormat = "webp"  # of the models' textures
     damaged: list[str] = field(default_factory=list, compare=False)  # met and dropped
 
     def attempt(self, function: Callable[..., Any], stage: str, *tools: Any) -> Attempt:

@@ -26,6 +26,9 @@ MODEL: Final = pa.schema(
         pa.field("sha256", pa.string()),
         pa.field("low_m", pa.list_(pa.float64())),
         pa.field("high_m", pa.list_(pa.float64())),
+        pa.field("coarse", pa.binary()),  # the same with fewer texels; may be empty
+        pa.field("coarse_sha256", pa.string()),
+        pa.field("coarse_texel_m", pa.float64()),
     ]
 )
 
@@ -63,6 +66,8 @@ class Modelled:
     sha256: str  # of the GLB
     low_m: tuple[float, float, float]  # east, north, up
     high_m: tuple[float, float, float]
+    coarse_sha256: str  # of the GLB for those far away; empty: there is none
+    coarse_texel_m: float  # its largest texel
 
     @property
     def key(self) -> str:
@@ -133,8 +138,10 @@ def modelled(
     path = bench.versions.path("block", key)
     make = partial(bench.keep, path, partial(glb, one, bench))
     make()
-    row = bench.read(path, make, ["sha256", "low_m", "high_m"]).to_pylist()[0]
-    return Modelled(one, path, row["sha256"], tuple(row["low_m"]), tuple(row["high_m"]))
+    told = ["sha256", "low_m", "high_m", "coarse_sha256", "coarse_texel_m"]
+    row = bench.read(path, make, told).to_pylist()[0]
+    bounds = {name: tuple(row.pop(name)) for name in ("low_m", "high_m")}
+    return Modelled(one, path, **bounds, **row)
 
 
 def only(one: Placed, done: set[Texture]) -> Placed:
@@ -160,6 +167,7 @@ def contents(one: Placed, bench: Bench) -> list[str]:
     ]
     return [
         json.dumps([one.key, one.task.credit, buildings, model.table(one.settled)]),
+        json.dumps([bench.image_format, one.task.licence, one.task.sources]),
         *finished,
     ]
 
@@ -172,13 +180,20 @@ def walls(building: Building) -> list[dict[str, Any]]:
 def glb(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
     views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
-    data, whole = model.model(one.settled, views, credit=one.task.credit)
+    task = one.task
+    rights = model.Rights(task.credit, task.licence, task.sources)
+    made = model.model(
+        one.settled, views, rights=rights, image_format=bench.image_format
+    )
     row = {
         "block": one.key,
-        "glb": data,
-        "sha256": hashlib.sha256(data).hexdigest(),
-        "low_m": whole.positions_m.min(axis=0).tolist(),
-        "high_m": whole.positions_m.max(axis=0).tolist(),
+        "glb": made.glb,
+        "sha256": hashlib.sha256(made.glb).hexdigest(),
+        "low_m": made.mesh.positions_m.min(axis=0).tolist(),
+        "high_m": made.mesh.positions_m.max(axis=0).tolist(),
+        "coarse": made.coarse,
+        "coarse_sha256": hashlib.sha256(made.coarse).hexdigest() if made.coarse else "",
+        "coarse_texel_m": made.coarse_texel_m,
     }
     return pa.Table.from_pylist([row], MODEL)
 

@@ -110,19 +110,20 @@ def made(
     for network in NETWORKS:
         models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
-    bench = Bench(store, Versions.present(models), models, limits, ours.retry)
+    form = "png" if ours.no_webp else "webp"
+    bench = Bench(store, Versions.present(models), models, limits, ours.retry, form)
     todo = plan(found.rows, city=ours.city, shard=shard)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    asked = " ".join([ours.shard, *schemes])
+    asked = " ".join([ours.shard, *schemes, *(["png"] if ours.no_webp else [])])
     run = runs.run_id(found.sha256 + anchors.sha256, bench.versions, asked)
     counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
-    note(store, run, options, began)  # a folder that can't be written to is told now
+    note(bench, run, options, began)  # a folder that can't be written to is told now
     near = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
@@ -130,7 +131,7 @@ def made(
             result = launched(options, todo, found, bench, run)
         check(store, run, todo)
         done = stages(result)
-        note(store, run, options, began, done)
+        note(bench, run, options, began, done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
         if shard != (1, 1) or not report.blocks:
@@ -253,13 +254,15 @@ def write(built: Built, bench: Bench, run: str) -> None:
 
 
 def note(
-    store: Store,
+    bench: Bench,
     run: str,
     options: PipelineOptions,
     began: float,
     done: dict[str, dict[str, int]] | None = None,
 ) -> None:
-    """Write when the run was and what it took: the only file with clock times.
+    """Write when the run was, what made it, and what it took.
+
+    It is the only file with clock times.
 
     Until the run is done it tells only when it began.
     """
@@ -268,11 +271,12 @@ def note(
         "run": run,
         "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
         "options": {name: str(value) for name, value in given.items()},
+        "versions": vars(bench.versions),
     }
     if done is not None:
         told |= {"seconds": round(time.time() - began, 1), "stages": done}
     text = json.dumps(told, indent=1, sort_keys=True) + "\n"
-    store.write_bytes(f"runs/{run}/run.json", text.encode())
+    bench.store.write_bytes(f"runs/{run}/run.json", text.encode())
 
 
 def stages(result: PipelineResult) -> dict[str, dict[str, int]]:

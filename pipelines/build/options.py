@@ -54,6 +54,9 @@ class CityOptions(PipelineOptions):
             action="store_true",
             help="replace a better site, too",
         )
+        parser.add_argument(
+            "--no_webp", action="store_true", help="write the models' textures as PNG"
+        )
         parser.add_argument("--allow_schemes", default="", help="of roots, as gs,s3")
 
 

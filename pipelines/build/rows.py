@@ -99,6 +99,8 @@ def block_rows(done: Modelled) -> Rows:
             "sha256": done.sha256,
             "low_m": list(done.low_m),
             "high_m": list(done.high_m),
+            "coarse_sha256": done.coarse_sha256,
+            "coarse_texel_m": done.coarse_texel_m,
             "outlines_m": [outline.ravel().tolist() for outline in built.outline_m],
             "closures_m": list(built.closure_m),
             "buildings": len(built.buildings),

@@ -45,6 +45,9 @@ def build_command(
     retry: Annotated[
         bool, typer.Option("--retry", help="Try again what ended its process twice.")
     ] = False,
+    webp: Annotated[
+        bool, typer.Option("--webp/--no-webp", help="Textures as WebP, or as PNG.")
+    ] = True,
     seconds: Annotated[
         float,
         typer.Option("--stage-seconds", min=0, help="A stage's time for a photo."),
@@ -63,6 +66,7 @@ def build_command(
     asked = {"models": str(models or ""), "shard": shard, "schemes": allow_scheme or ()}
     limits = [f"--stage_seconds={seconds}", f"--stage_gigabytes={gigabytes}"]
     flags = ["--retry"] * retry + ["--publish_anyway"] * publish_anyway
+    flags += ["--no_webp"] * (not webp)
     report = built(city, voice, **asked, beam=[*context.args, *limits, *flags])
     whole = bool(report.blocks and report.photos)  # what no photo shows is assumed
     poor = report.rejected_share > max_rejected or report.held

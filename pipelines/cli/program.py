@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import typer
 
-from pipelines.cli import build, demo, explain, index, report, publish, view
+from pipelines.cli import build, demo, explain, export, index, publish, report, view
 from pipelines.console import opened_streams
 from pipelines.evaluate import commands
 
@@ -36,6 +36,7 @@ app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
 )
 app.command("publish", epilog=publish.EXAMPLES)(publish.publish_command)
 app.command("view", epilog=view.EXAMPLES)(view.view_command)
+app.command("export", epilog=export.EXAMPLES)(export.export_command)
 app.command("demo", epilog=demo.EXAMPLES, context_settings=TO_BEAM)(demo.demo_command)
 app.command("report", epilog=report.EXAMPLES)(report.report_command)
 app.command("status", epilog=report.STATUS_EXAMPLES)(report.status_command)

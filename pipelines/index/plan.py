@@ -35,6 +35,8 @@ class BlockTask:
     fronts: tuple[Front, ...]  # in the order of ring and rank
     photos: tuple[tuple[Name, str], ...]  # and a front that each may show
     credit: str
+    licence: str = ""
+    sources: tuple[str, ...] = ()  # addresses of the archive's records
 
     @property
     def key(self) -> str:
@@ -91,8 +93,14 @@ def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:
         for row in rows
         if row.photo and row.front
     }
-    named = sorted({row.credit for row in rows if row.credit})
-    return BlockTask(block, tuple(ordered), tuple(sorted(pairs)), "; ".join(named))
+    return BlockTask(
+        block,
+        tuple(ordered),
+        tuple(sorted(pairs)),
+        credit="; ".join(sorted({row.credit for row in rows if row.credit})),
+        licence="; ".join(sorted({row.licence for row in rows if row.licence})),
+        sources=tuple(sorted({row.source for row in rows if row.source})),
+    )
 
 
 def homeless(row: Row) -> Rejection:

@@ -31,6 +31,17 @@ class Row:
         """Name the row in rejections."""
         return f"{CSV} row {self.number}"
 
+    @property
+    def licence(self) -> str:
+        """Tell under which licence the photo may be shown, if somebody wrote it."""
+        return text(self.cells, "rights")
+
+    @property
+    def source(self) -> str:
+        """Give the address of the archive's record of the photo, if it is written."""
+        address = text(self.cells, "source_url")
+        return address if address.startswith(("https://", "http://")) else ""
+
 
 def contradictions(rows: Sequence[Row]) -> list[str]:
     """Name the rows that tell a front otherwise than an earlier row, which counts."""

@@ -4,10 +4,10 @@ In: a run's tables and models. Out: `CITY/site`, and the pointer to the run.
 Open `publish` first.
 """
 
-from pipelines.site.folder import Folder, Foreign, recorded
+from pipelines.site.folder import Folder, Foreign, inside, recorded
 from pipelines.site.publish import CURRENT, claim, damaged, publish
 from pipelines.site.record import record
-from pipelines.site.site import ViewerMissingError, thumbnail
+from pipelines.site.site import ViewerMissingError, safe, thumbnail
 
 __all__ = [
     "CURRENT",
@@ -16,8 +16,10 @@ __all__ = [
     "ViewerMissingError",
     "claim",
     "damaged",
+    "inside",
     "publish",
     "record",
     "recorded",
+    "safe",
     "thumbnail",
 ]

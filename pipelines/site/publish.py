@@ -3,10 +3,12 @@
 import hashlib
 import json
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
+
+import numpy as np
 
 from pipelines.index import Anchors, cleaned, of_folder
 from pipelines.index.manifest import natural
@@ -85,7 +87,8 @@ def models(
     photos = runs.read_table(store, run, "photos")
     keys = {(row["root"], row["name"]): row["key"] for row in photos}
     shown = [(row, keys.get((rooted(row.root, store.root), row.photo))) for row in rows]
-    taken, whose = of_buildings(shown), credits_of(shown)
+    taken, whose = of_buildings(shown), rights_of(shown)
+    stand = volumes(runs.read_table(store, run, "buildings"))
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
     lying = {row["block"]: row for row in placed.rows}
     made = []
@@ -95,7 +98,7 @@ def models(
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
             for photo in building["photos"]:  # it says whose the block's photos are
-                photo["credit"] = whose.get(photo["key"], photo.get("credit", ""))
+                photo.update(whose.get(photo["key"], {}))
             there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo
@@ -112,6 +115,10 @@ def models(
                 origin_m=(move.east_m, move.north_m),
                 place=place,
                 turn_rad=turn,
+                coarse=coarse_of(store, row),
+                coarse_texel_m=row["coarse_texel_m"],
+                footprints_m=stand[row["block"]][0],
+                heights_m=stand[row["block"]][1],
             )
         )
     return made
@@ -129,17 +136,45 @@ def of_buildings(
         if row.front is not None and key is not None:
             photo = {"key": key, "used": False, "caption": row.photo}
             building = f"{row.front.block}-{row.front.lot}"
-            told[building][key] = photo | {"credit": row.credit}
+            told[building][key] = photo | rights(row)
     return {building: list(own.values()) for building, own in told.items()}
 
 
-def credits_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, str]:
-    """Tell whom each photo is credited to, by its key."""
-    credit: dict[str, str] = {}
+def rights_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str]]:
+    """Tell whom each photo is credited to, its licence and its record, by its key."""
+    told: dict[str, dict[str, str]] = {}
     for row, key in shown:
         if key is not None:
-            credit.setdefault(key, row.credit)
-    return credit
+            told.setdefault(key, rights(row))
+    return told
+
+
+def rights(row: Row) -> dict[str, str]:
+    """Tell a photo's credit, and what else is written of it."""
+    more = {"rights": row.licence, "source_url": row.source}
+    return {"credit": row.credit, **{name: word for name, word in more.items() if word}}
+
+
+def volumes(buildings: list[dict[str, Any]]) -> dict[str, tuple[Any, Any]]:
+    """Gather each block's footprints and heights, to be drawn from far away."""
+    told = defaultdict(list)
+    for one in buildings:
+        told[one["block"]].append(one)
+    return {
+        block: (
+            np.array([one["footprint_m"] for one in own]).reshape(-1, 4, 2),
+            np.array([one["height_m"] for one in own]),
+        )
+        for block, own in told.items()
+    }
+
+
+def coarse_of(store: Store, row: dict[str, Any]) -> Callable[[], bytes] | None:
+    """Tell how to read a block's model for those far away, if there is one."""
+    sha256 = row["coarse_sha256"]
+    if not sha256:
+        return None
+    return partial(whole, store, row["model"], sha256, "coarse")
 
 
 def reasons(
@@ -163,15 +198,15 @@ def cell(store: Store, path: str, column: str) -> bytes:
     return store.read_table(path, [column]).to_pylist()[0][column]
 
 
-def whole(store: Store, path: str, sha256: str) -> bytes:
+def whole(store: Store, path: str, sha256: str, column: str = "glb") -> bytes:
     """Read a model, and insist that it is the one that the run has made.
 
     Raises:
         Damaged: if it is another.
     """
-    data = cell(store, path, "glb")
+    data = cell(store, path, column)
     if hashlib.sha256(data).hexdigest() != sha256:
-        raise Damaged("its GLB has another SHA-256 than the run says", path)
+        raise Damaged(f"its {column} has another SHA-256 than the run says", path)
     return data
 
 

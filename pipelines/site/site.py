@@ -2,8 +2,10 @@
 
     index.html, assets/            the viewer, built from `viewer/`
     blocks/<block>-<sha8>.glb      models, named by content
+    far/<block>-<sha8>.glb         the same with fewer texels, and volumes of districts
     photos/<key>.webp              thumbnails of the photographs
     tileset-<sha8>.json            3D Tiles, as site.json names them
+    tiles-<sha16>.json             its districts, where there are many
     site.json                      what is known of blocks and buildings
     tileset.json                   the same 3D Tiles, under the name that others know
 
@@ -13,6 +15,7 @@ one city or the other, never half of both. Nothing is removed that we did not wr
 (`folder`).
 """
 
+import dataclasses
 import hashlib
 import io
 import json
@@ -22,6 +25,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 from PIL import Image
 
 from nostalgin_core import city
@@ -36,6 +40,7 @@ SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
 SWAPPED: Final = ("site.json", "tileset.json")  # last, in this order
 
 Json = dict[str, Any]
+Data = bytes | Callable[[], bytes]  # or how to read it, one block at a time
 
 
 class ViewerMissingError(FileNotFoundError):
@@ -55,13 +60,17 @@ class BlockModel:
     """
 
     name: str
-    glb: bytes | Callable[[], bytes]  # or how to read them, one block at a time
+    glb: Data
     record: Mapping[str, Any]
     low_m: tuple[float, float, float]  # the model's bounds: east, north, up
     high_m: tuple[float, float, float]
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
     place: city.Place | None = None  # in place of origin_m, where it is known
     turn_rad: float = 0.0  # of its frame against east, anticlockwise
+    coarse: Data | None = None  # the same with fewer texels
+    coarse_texel_m: float = 0.0  # the largest of these
+    footprints_m: np.ndarray | None = None  # n 4 2, of its buildings in its own frame
+    heights_m: np.ndarray | None = None
 
 
 def assemble(
@@ -91,30 +100,47 @@ def assemble(
     index = viewer / "index.html"
     if not index.is_file():
         raise ViewerMissingError
-    models = {f"blocks/{safe(one.name)}-{digest(one)}.glb": one for one in blocks}
+    models = {f"blocks/{safe(one.name)}-{digest(one.glb)}.glb": one for one in blocks}
+    coarse = [
+        "" if one.coarse is None else f"far/{safe(one.name)}-{digest(one.coarse)}.glb"
+        for one in blocks
+    ]
     files = {key: f"photos/{safe(key)}{suffix(data)}" for key, data in photos.items()}
     tiles = [
-        city.Tile(uri, one.low_m, one.high_m, one.origin_m, one.place, one.turn_rad)
-        for uri, one in models.items()
+        _tile(uri, one, far)
+        for (uri, one), far in zip(models.items(), coarse, strict=True)
     ]
-    tileset = _text(city.tileset(tiles, place=place))
+    tree = city.tree(tiles, place=place)
+    tileset = _text(tree.tileset)
     named = f"tileset-{hashlib.sha256(tileset).hexdigest()[:8]}.json"
     record = {
         "title": title,
         "tileset": named,
         "legend": legend(),
-        "blocks": [_block(uri, one, files) for uri, one in models.items()],
+        **({"place": dataclasses.asdict(place)} if place is not None else {}),
+        "blocks": [
+            {**_block(uri, one, files), "coarse": far, "frame": frame}
+            for (uri, one), far, frame in zip(
+                models.items(), coarse, tree.frames, strict=True
+            )
+        ],
     }
     assets = {f"assets/{p.name}": p for p in sorted((viewer / "assets").iterdir())}
-    site = Folder(
-        destination, [*assets, *files.values(), *models, "index.html", named, *SWAPPED]
-    )
+    far = {
+        uri: one.coarse
+        for uri, one in zip(coarse, blocks, strict=True)
+        if one.coarse is not None
+    }
+    names = [*assets, *files.values(), *models, *far, *tree.files]
+    site = Folder(destination, [*names, "index.html", named, *SWAPPED])
     for name, path in assets.items():
         site.write(name, path.read_bytes())
     for key, data in photos.items():
         site.write(files[key], data)
     for uri, one in models.items():
-        site.write(uri, content(one))
+        site.write(uri, content(one.glb))
+    for uri, data in (far | tree.files).items():
+        site.write(uri, content(data))
     pages = (index.read_bytes(), tileset, _text(record), tileset)
     for name, data in zip(("index.html", named, *SWAPPED), pages, strict=True):
         site.write(name, data)
@@ -130,14 +156,14 @@ def thumbnail(image: Gray, *, longest_px: int = THUMBNAIL_PX) -> bytes:
     return file.getvalue()
 
 
-def digest(block: BlockModel) -> str:
+def digest(data: Data) -> str:
     """Give a model's file name what changes with its content."""
-    return hashlib.sha256(content(block)).hexdigest()[:8]
+    return hashlib.sha256(content(data)).hexdigest()[:8]
 
 
-def content(block: BlockModel) -> bytes:
-    """Give a block's model, which may have to be read first."""
-    return block.glb() if callable(block.glb) else block.glb
+def content(data: Data) -> bytes:
+    """Give a model, which may have to be read first."""
+    return data() if callable(data) else data
 
 
 def safe(name: str) -> str:
@@ -158,6 +184,21 @@ def suffix(data: bytes) -> str:
     if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
         return ".webp"
     return next((end for start, end in SUFFIXES if data.startswith(start)), ".bin")
+
+
+def _tile(uri: str, one: BlockModel, coarse: str) -> city.Tile:
+    return city.Tile(
+        uri,
+        one.low_m,
+        one.high_m,
+        one.origin_m,
+        one.place,
+        one.turn_rad,
+        coarse,
+        one.coarse_texel_m,
+        one.footprints_m,
+        one.heights_m,
+    )
 
 
 def _block(uri: str, block: BlockModel, files: Mapping[str, str]) -> Json:

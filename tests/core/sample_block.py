@@ -254,7 +254,7 @@ def write_site(folder: Path, names: tuple[str, ...] = ("1", "2")) -> None:
         rows += [
             dict(zip(table, row, strict=True)) for row in zip(*columns, strict=True)
         ]
-    text = json.dumps(city.tileset(tiles), indent=1)
+    text = json.dumps(city.tree(tiles).tileset, indent=1)
     (folder / "tileset.json").write_text(text)
     (folder / "buildings.json").write_text(json.dumps(rows, indent=1))
 

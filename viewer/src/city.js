@@ -63,7 +63,11 @@ export class City {
   arrange(root) {
     const content = new Map();
     collect(root, new Matrix4(), content);
-    const worlds = this.record.blocks.map((block) => content.get(block.uri));
+    // districts may lie in files of their own, so site.json tells every block's frame
+    const globe = root.transform ? new Matrix4().fromArray(root.transform) : new Matrix4();
+    const worlds = this.record.blocks.map((block) =>
+      block.frame ? globe.clone().multiply(new Matrix4().fromArray(block.frame)) : content.get(block.uri),
+    );
     const first = worlds.find(Boolean) ?? new Matrix4();
     const city = Y_UP_FROM_Z_UP.clone().multiply(first.clone().invert());
     city.decompose(this.tiles.group.position, this.tiles.group.quaternion, this.tiles.group.scale);
@@ -104,7 +108,7 @@ export class City {
 
   #enter(scene, tile) {
     place(scene, this.tiles.group.matrixWorld);
-    const block = this.record.blocks.find((one) => tile.content.uri.endsWith(one.uri));
+    const block = this.record.blocks.find((one) => [one.uri, one.coarse].some((uri) => uri && tile.content.uri.endsWith(uri)));
     const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
     const mesh = united(scene, assumed, this.keys);
     if (!mesh) return;

@@ -10,8 +10,8 @@ from nostalgin_core.city.tileset import (
     Tile,
     carried,
     ecef_from_enu,
-    tileset,
 )
+from nostalgin_core.city.tree import tree
 from tests.core import sample_block as sample
 
 MIDTOWN = Place(-73.9868, 40.7549, 12.0)
@@ -51,7 +51,7 @@ def outside(points: np.ndarray, tile: dict[str, Any]) -> float:
 def test_children_lie_inside_their_parent(
     tiles: list[Tile], place: Place | None
 ) -> None:
-    root = tileset(tiles, place=place)["root"]
+    root = tree(tiles, place=place).tileset["root"]
     for child in root["children"]:
         inside = carried(matrix(child), corners(child))
         assert outside(inside, root) <= 1e-6
@@ -60,7 +60,7 @@ def test_children_lie_inside_their_parent(
 def test_content_lies_inside_its_tile() -> None:
     made, _ = sample.built("1")
     low, high = sample.bounds(made)
-    tile = tileset([Tile("1.glb", low, high)])["root"]["children"][0]
+    tile = tree([Tile("1.glb", low, high)]).tileset["root"]["children"][0]
     ground = np.concatenate([one.footprint_m for one in made.buildings])
     tops = np.repeat([one.height_m for one in made.buildings], 4)
     content = np.vstack(
@@ -70,7 +70,7 @@ def test_content_lies_inside_its_tile() -> None:
 
 
 def test_the_containment_check_can_fail() -> None:
-    root = tileset(LOCAL)["root"]
+    root = tree(LOCAL).tileset["root"]
     root["boundingVolume"]["box"][3] -= 1.0
     assert outside(corners(root["children"][0]), root) > 0.5
 
@@ -89,20 +89,20 @@ def test_a_place_is_where_the_globe_says() -> None:
 
 
 def test_a_block_s_own_place_wins_over_the_city_s_plane() -> None:
-    far = tileset(PLACED, place=MIDTOWN)["root"]["children"][2]
+    far = tree(PLACED, place=MIDTOWN).tileset["root"]["children"][2]
     frame = ecef_from_enu(MIDTOWN) @ matrix(far)
     np.testing.assert_allclose(frame, ecef_from_enu(Place(-74.1, 40.6)), atol=1e-6)
     assert matrix(far)[2, 3] < -10  # the earth curves away below the plane
 
 
 def test_a_city_without_a_place_lies_at_the_origin() -> None:
-    root = tileset(LOCAL)["root"]
+    root = tree(LOCAL).tileset["root"]
     assert "transform" not in root
     np.testing.assert_allclose(matrix(root["children"][1])[:3, 3], [0, 90, 0])
 
 
 def test_it_is_3d_tiles_1_1_and_writes_as_plain_json() -> None:
-    city = tileset(PLACED, place=MIDTOWN, version="7")
+    city = tree(PLACED, place=MIDTOWN, version="7").tileset
     assert city["asset"]["version"] == "1.1"
     assert json.loads(json.dumps(city, allow_nan=False)) == city
     assert city["geometricError"] >= city["root"]["geometricError"] > 0
@@ -115,9 +115,9 @@ def test_it_is_3d_tiles_1_1_and_writes_as_plain_json() -> None:
 
 def test_a_city_without_blocks_is_refused() -> None:
     with pytest.raises(ValueError, match="at least one block"):
-        tileset([])
+        tree([])
 
 
 def test_a_block_on_the_globe_needs_a_city_on_the_globe() -> None:
     with pytest.raises(ValueError, match="its city has none"):
-        tileset(PLACED)
+        tree(PLACED)

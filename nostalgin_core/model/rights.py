@@ -1,0 +1,33 @@
+"""Whose photographs a model shows, and what may be done with it: told in every file."""
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+UNSTATED: Final = "not stated"
+
+
+@dataclass(frozen=True, slots=True)
+class Rights:
+    """Whom to name, under which licence, and where the photographs are kept."""
+
+    credit: str = ""
+    licence: str = ""  # its name, or its address
+    sources: tuple[str, ...] = ()  # addresses of the archive's records
+
+    @property
+    def line(self) -> str:
+        """Say it in one line, for glTF's `asset.copyright`; what nobody stated, too."""
+        return f"{self.credit or f'credit {UNSTATED}'}; licence: {self._licence}"
+
+    @property
+    def extras(self) -> dict[str, Any]:
+        """Say it as values; few programs show the line."""
+        return {
+            "credit": self.credit or UNSTATED,
+            "licence": self._licence,
+            "sources": list(self.sources),
+        }
+
+    @property
+    def _licence(self) -> str:
+        return self.licence or UNSTATED

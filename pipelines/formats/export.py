@@ -1,0 +1,249 @@
+"""One published city, written in the formats that are asked for.
+
+    OUT/cityjson/<block>.city.jsonl, textures/<block>.png, textures/<block>-evidence.png
+    OUT/obj/<block>.zip
+    OUT/geojson/footprints.geojson
+    OUT/prov/provenance.json
+    OUT/iiif/manifest.json
+
+Each format has a folder of its own with a record of what we wrote there, as a site has,
+and nothing of another's is touched. Models are read and written block by block.
+"""
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from PIL import Image
+
+from nostalgin_core import formats
+from nostalgin_core.formats import Canvas, Shown
+from pipelines.formats import provenance
+from pipelines.formats.published import Json, Published, Unexportable, published
+from pipelines.formats.words import attributes
+from pipelines.site import Folder, safe
+
+FORMATS: Final = ("cityjson", "obj", "geojson", "prov", "iiif")
+MIMES: Final = {".webp": "image/webp", ".jpg": "image/jpeg", ".png": "image/png"}
+RIGHTS: Final = ("creativecommons.org/", "rightsstatements.org/")
+
+Tell = Callable[[str, int], None]  # a block's name, and how many are done
+
+
+def silent(block: str, done: int) -> None:
+    """Tell nobody."""
+
+
+def export(
+    city: Path, out: Path, wanted: Sequence[str], *, base: str = "", tell: Tell = silent
+) -> dict[str, int]:
+    """Write a city; tell how many files each format has.
+
+    `base` is the address where its site will lie: IIIF names everything by address.
+
+    Raises:
+        Unexportable: if there is no site, or it can't be told in one of the formats;
+            nothing is written then.
+        Foreign: if a folder or a file in the way is another's.
+    """
+    site = published(city)
+    base = checked(site, wanted, base)
+    told = provenance.read(city, site) if "prov" in wanted else None
+    makers: list[Any] = []
+    if "cityjson" in wanted:
+        makers.append(CityJson(out / "cityjson", site))
+    if "obj" in wanted:
+        makers.append(Obj(out / "obj", site))
+    if "geojson" in wanted:
+        makers.append(GeoJson(out / "geojson", site))
+    for done, block in enumerate(site.blocks if makers else [], 1):
+        shown = site.shown(block)
+        for maker in makers:
+            maker.add(block, shown)
+        tell(str(block["name"]), done)
+    counts = {maker.name: maker.close() for maker in makers}
+    if told is not None:
+        counts["prov"] = single(out / "prov", "provenance.json", told)
+    if "iiif" in wanted:
+        canvases = [each for one in site.blocks for each in pictures(site, one)]
+        first = {one.name: one for one in reversed(canvases)}
+        ordered = [first[name] for name in dict.fromkeys(one.name for one in canvases)]
+        made = formats.presentation(base, title=site.title, canvases=ordered)
+        counts["iiif"] = single(out / "iiif", "manifest.json", made)
+    return counts
+
+
+def checked(site: Published, wanted: Sequence[str], base: str) -> str:
+    """Insist that all that is asked for can be told, before anything is written."""
+    odd = next((one for one in wanted if one not in FORMATS), None)
+    if odd is not None or not wanted:
+        raise Unexportable(f"--to {odd or ''}: choose of {', '.join(FORMATS)}")
+    if "geojson" in wanted and site.place is None:
+        raise Unexportable(
+            "GeoJSON knows degrees alone (RFC 7946), and this city has no place on the "
+            "globe: give it one and build again, or export cityjson and obj"
+        )
+    if "iiif" in wanted and not base.startswith(("https://", "http://")):
+        raise Unexportable(
+            "IIIF names everything by its address: tell with --base https://... where "
+            "the site will lie"
+        )
+    return base if base.endswith("/") else f"{base}/"
+
+
+def single(folder: Path, name: str, value: Json) -> int:
+    """Write a format that is one file."""
+    return whole(Folder(folder, [name]), {name: text(value)})
+
+
+def whole(folder: Folder, files: dict[str, bytes]) -> int:
+    """Write files, and remove what we wrote before and not since."""
+    for name, data in files.items():
+        folder.write(name, data)
+    folder.prune()
+    return len(files)
+
+
+def text(value: Json) -> bytes:
+    """Write a value on one line."""
+    return json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
+
+
+class CityJson:
+    """A CityJSON sequence a block, and its textures."""
+
+    name = "cityjson"
+
+    def __init__(self, folder: Path, site: Published) -> None:
+        """Take the folder for all files."""
+        self._site = site
+        names = [name for one in site.blocks for name in self._names(one)]
+        self._folder, self._count = Folder(folder, names), len(names)
+
+    def add(self, block: Json, shown: Shown) -> None:
+        """Write one block."""
+        file, *images = self._names(block)
+        ground = self._site.ground(block)
+        known = {str(one["id"]): one for one in block["buildings"]}
+        lines = [formats.header(ground, title=f"{self._site.title} {shown.block}")]
+        lines += [
+            formats.feature(
+                shell,
+                ground,
+                attributes=attributes(shown, shell, known.get(shell.name, {})),
+                images=images,
+            )
+            for shell in shown.shells
+        ]
+        self._folder.write(images[0], formats.png(shown.colours))
+        self._folder.write(images[1], formats.png(formats.tinted(shown.evidence)))
+        self._folder.write(file, b"".join(text(line) + b"\n" for line in lines))
+
+    def close(self) -> int:
+        """End, and count the files."""
+        self._folder.prune()
+        return self._count
+
+    def _names(self, block: Json) -> list[str]:
+        name = safe(str(block["name"]))
+        images = [f"textures/{name}.png", f"textures/{name}-evidence.png"]
+        return [f"{name}.city.jsonl", *images]
+
+
+class Obj:
+    """A zip a block."""
+
+    name = "obj"
+
+    def __init__(self, folder: Path, site: Published) -> None:
+        """Take the folder for all files."""
+        self._site = site
+        names = [self._name(one) for one in site.blocks]
+        self._folder, self._count = Folder(folder, names), len(names)
+
+    def add(self, block: Json, shown: Shown) -> None:
+        """Write one block."""
+        told = {
+            "block": shown.block,
+            "frame": block["frame"],
+            "place": self._site.record.get("place"),
+            "scale": 1.0,
+            "copyright": shown.copyright,
+            **{key: shown.extras.get(key) for key in ("credit", "licence", "sources")},
+            "buildings": [one["id"] for one in block["buildings"]],
+        }
+        name = self._name(block)
+        data = formats.archive(shown, name.removesuffix(".zip"), told=told)
+        self._folder.write(name, data)
+
+    def close(self) -> int:
+        """End, and count the files."""
+        self._folder.prune()
+        return self._count
+
+    def _name(self, block: Json) -> str:
+        return f"{safe(str(block['name']))}.zip"
+
+
+class GeoJson:
+    """One collection of all footprints."""
+
+    name = "geojson"
+    file: Final = "footprints.geojson"
+
+    def __init__(self, folder: Path, site: Published) -> None:
+        """Take the folder for the one file."""
+        self._site, self._folder = site, Folder(folder, [self.file])
+        self._features: list[bytes] = []
+
+    def add(self, block: Json, shown: Shown) -> None:
+        """Keep one block's footprints."""
+        ground = self._site.ground(block)
+        known = {str(one["id"]): one for one in block["buildings"]}
+        for shell in shown.shells:
+            facts = attributes(shown, shell, known.get(shell.name, {}))
+            made = formats.footprint(shell, ground, attributes=facts)
+            if made is not None:
+                self._features.append(text(made))
+
+    def close(self) -> int:
+        """Write the collection."""
+        features = b",\n".join(self._features)
+        data = b'{"type": "FeatureCollection", "features": [\n' + features + b"\n]}\n"
+        return whole(self._folder, {self.file: data})
+
+
+def pictures(site: Published, block: Json) -> list[Canvas]:
+    """List the photographs of a block that the site has pictures of."""
+    made = []
+    for building in block["buildings"]:
+        for photo in building.get("photos", ()):
+            file = photo.get("file")
+            if not file or Path(file).suffix not in MIMES:
+                continue
+            try:
+                with Image.open(site.file(file)) as picture:
+                    width, height = picture.size
+            except OSError as problem:
+                raise Unexportable(f"{file}: {problem}; build again") from problem
+            rights = str(photo.get("rights", ""))
+            made.append(
+                Canvas(
+                    name=safe(str(photo["key"])),
+                    label=str(photo.get("caption") or photo["key"]),
+                    file=file,
+                    mime=MIMES[Path(file).suffix],
+                    width_px=width,
+                    height_px=height,
+                    credit=str(photo.get("credit", "")),
+                    rights=rights if any(one in rights for one in RIGHTS) else "",
+                    source=str(photo.get("source_url", "")),
+                    known={
+                        "Block": str(block["name"]),
+                        "Lot": str(building.get("lot", "")),
+                        "Address": str(building.get("address", "")),
+                    },
+                )
+            )
+    return made
