@@ -41,7 +41,8 @@ def record(
     `rejections` and `more` (a year, say) map building ids. Lengths are metres, rounded
     to centimetres; `photographed_share` is the share of a building's fronts, by width,
     that a camera saw; `height_low_m` to `height_high_m` hold the height in nine of ten
-    cases, and `height_assumed` says that nothing supports it.
+    cases, and `height_assumed` says that nothing supports it. `footprint_m` is
+    anticlockwise from the first front's left end.
     """
     by_id = {front.front_id: front for front in fronts}
     facades = {(one.photo, one.facade): one for one in seen}
@@ -102,6 +103,7 @@ def _building(
         "width_assumed": bool(own and own[0].width_assumed),
         "height_m": round(building.height_m, CENTIMETRE),
         **_height(building),
+        "footprint_m": _rounded(building.footprint_m, CENTIMETRE),
         "assumed": building.assumed,
         "photographed_share": round(_share(building, facades), 3),
     }
@@ -155,8 +157,8 @@ def _photographed(wall: Wall, facades: Mapping[Texture, Seen]) -> float:
     return known.photographed if known else 0.0
 
 
-def _rounded(outline: np.ndarray) -> list[list[float]]:
-    return [[float(value) + 0.0 for value in row] for row in np.round(outline, 3)]
+def _rounded(outline: np.ndarray, digits: int = 3) -> list[list[float]]:
+    return [[float(value) + 0.0 for value in row] for row in np.round(outline, digits)]
 
 
 def _rejection(why: Rejection) -> Json:
