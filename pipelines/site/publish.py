@@ -64,7 +64,7 @@ def models(
     photos = runs.read_table(store, run, "photos")
     keys = {(row["root"], row["name"]): row["key"] for row in photos}
     shown = [(row, keys.get((rooted(row.root, store.root), row.photo))) for row in rows]
-    taken, whose = of_buildings(shown), credits_of(shown)
+    taken, words, built = of_buildings(shown), words_of(shown), years(rows)
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
     records = [json.loads(row["record"]) for row in ordered]
     moves = places(records, rows)
@@ -73,8 +73,10 @@ def models(
         move = moves[row["block"]]
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
+            building.update(built.get(building["id"], {}))
             for photo in building["photos"]:  # it says whose the block's photos are
-                photo["credit"] = whose.get(photo["key"], photo.get("credit", ""))
+                unsaid = {"credit": photo.get("credit", "")}
+                photo.update(words.get(photo["key"], unsaid))
             there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo
@@ -125,17 +127,41 @@ def of_buildings(
         if row.front is not None and key is not None:
             photo = {"key": key, "used": False, "caption": row.photo}
             building = f"{row.front.block}-{row.front.lot}"
-            told[building][key] = photo | {"credit": row.credit}
+            told[building][key] = photo | said(row)
     return {building: list(own.values()) for building, own in told.items()}
 
 
-def credits_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, str]:
-    """Tell whom each photo is credited to, by its key."""
-    credit: dict[str, str] = {}
+def words_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str]]:
+    """Tell whom each photo is credited to, by its key, and what else is said of it."""
+    words: dict[str, dict[str, str]] = {}
     for row, key in shown:
         if key is not None:
-            credit.setdefault(key, row.credit)
-    return credit
+            words.setdefault(key, said(row))
+    return words
+
+
+def said(row: Row) -> dict[str, str]:
+    """Take what a row says of its photo: credit, date, the archive's own record.
+
+    Only a web page's address is handed on as one.
+    """
+    date, source = (str(row.cells.get(n) or "").strip() for n in ("date", "source"))
+    told = {"credit": row.credit}
+    if date:
+        told["date"] = date
+    if source.lower().startswith(("http://", "https://")):
+        told["source"] = source
+    return told
+
+
+def years(rows: Sequence[Row]) -> dict[str, dict[str, str]]:
+    """Tell when buildings were built, as far as their rows do."""
+    known: dict[str, dict[str, str]] = {}
+    for row in rows:
+        year = str(row.cells.get("year") or "").strip()
+        if row.front is not None and year:
+            known.setdefault(f"{row.front.block}-{row.front.lot}", {"year": year})
+    return known
 
 
 def reasons(

@@ -35,7 +35,7 @@ export class City {
     this.nearby = new OrthographicCamera(-NEAR_M, NEAR_M, NEAR_M, -NEAR_M, 1, 2000);
     for (const block of record.blocks) {
       for (const building of block.buildings) {
-        this.buildings.set(String(building.id), { record: building, block, shape: null });
+        this.buildings.set(String(building.id), { record: building, block, shape: null, detail: 0 });
       }
     }
     tiles.setCamera(this.nearby);
@@ -66,6 +66,11 @@ export class City {
   arrange(root) {
     const content = new Map();
     collect(root, new Matrix4(), content);
+    const [known] = this.record.blocks.map(({ frame }) => frame);
+    if (known) {
+      this.#arrangeBy(known, root);
+      return;
+    }
     const worlds = this.record.blocks.map((block) => content.get(block.uri)); // none in a nested tileset
     const first = worlds.find(Boolean) ?? new Matrix4();
     const city = Y_UP_FROM_Z_UP.clone().multiply(first.clone().invert());
@@ -76,6 +81,19 @@ export class City {
       if (!worlds[i]) return;
       this.#frame(block, city.clone().multiply(worlds[i]).multiply(zUpFromYUp));
     });
+  }
+
+  /** Lays the city by the frames that its record gives: city_from_block, column by column, z up. */
+  #arrangeBy(first, root) {
+    const level = Y_UP_FROM_Z_UP.clone().multiply(new Matrix4().fromArray(first).invert());
+    const rooted = new Matrix4().fromArray(root.transform ?? new Matrix4().elements).invert();
+    level.clone().multiply(rooted)
+      .decompose(this.tiles.group.position, this.tiles.group.quaternion, this.tiles.group.scale);
+    this.group.updateMatrixWorld(true);
+    const zUpFromYUp = Y_UP_FROM_Z_UP.clone().invert();
+    for (const block of this.record.blocks) {
+      if (block.frame) this.#frame(block, level.clone().multiply(new Matrix4().fromArray(block.frame)).multiply(zUpFromYUp));
+    }
   }
 
   /** Keeps where a block lies. */
@@ -145,14 +163,20 @@ export class City {
     place(scene, this.tiles.group.matrixWorld);
     const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
     const mesh = united(scene, assumed, this.keys);
-    if (!mesh) return;
+    if (!mesh) {
+      scene.traverse((one) => { // volumes that stand for what is far
+        if (one.isMesh) one.material = surface(one);
+      });
+      return;
+    }
     place(scene, this.tiles.group.matrixWorld);
     mesh.geometry.boundsTree = new MeshBVH(mesh.geometry);
     mesh.material = surface(mesh);
     this.walls.add(mesh);
+    const detail = mesh.material.map?.image?.width ?? 0; // of several models of a building the finest counts
     for (const [feature, shape] of survey(mesh)) {
       const building = this.buildings.get(mesh.userData.ids[feature]);
-      if (building) building.shape = shape;
+      if (building && (building.shape === null || detail >= building.detail)) Object.assign(building, { shape, detail });
     }
     this.#welcome(mesh, scene, tile);
   }
@@ -175,6 +199,7 @@ export class City {
       for (const [block, meshes] of this.standing) {
         if (!meshes.delete(mesh) || meshes.size) continue;
         this.standing.delete(block);
+        for (const { id } of block.buildings) this.buildings.get(String(id)).detail = 0;
         this.onGone(block);
       }
       mesh.geometry.dispose();

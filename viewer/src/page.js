@@ -16,8 +16,9 @@ import { shoot } from './shot.js';
 import { faced, picked, where } from './sight.js';
 import { Stage } from './stage.js';
 import { bestAzimuth, corners, frontFor, homeIn } from './vantage.js';
-import { between, show, viewOf } from './view.js';
+import { between, show, shownBy, viewOf } from './view.js';
 import { Walker, rows } from './walker.js';
+import { nameOf } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 const FLIGHT_S = 1.1;
@@ -176,20 +177,13 @@ export class Page {
 
   /** What the camera shows now. */
   view() {
-    const { camera } = this.stage;
     this.aim();
-    const [p, n] = [camera.projectionMatrixInverse, camera.near];
-    const edge = (x, y) => camera.position.clone().set(x, y, -1).applyMatrix4(p).divideScalar(n);
-    const [low, high] = [edge(-1, -1), edge(1, 1)];
-    return {
-      position: camera.position.clone(),
-      quaternion: camera.quaternion.clone(),
-      frustum: { left: low.x, right: high.x, top: high.y, bottom: low.y },
-    };
+    return shownBy(this.stage.camera);
   }
 
   draw() {
-    this.stage.draw(this.height, this.walker.feet, this.guide.then.on);
+    const { then } = this.guide;
+    this.stage.draw(this.height, this.walker.feet, { over: then.on, low: then.low });
     this.minimap.draw(this.walker.pose, this.city, this.stage, this.chosen, shown.evidence.value);
     const progress = Math.round(this.city.tiles.loadProgress * 100);
     $('progress').setAttribute('aria-valuenow', progress);
@@ -199,7 +193,8 @@ export class Page {
   /** Says where one is, on the page and in the address bar. */
   tell() {
     const hit = this.flying ? null : faced(this.city, this.stage.camera.position, this.walker.yaw);
-    const text = where(hit, this.stage.streetAt(this.walker.feet));
+    const shot = this.guide.then.on ? this.city.buildings.get(this.chosen) : null;
+    const text = shot ? `As ${nameOf(shot.record)} was photographed` : where(hit, this.stage.streetAt(this.walker.feet));
     if (this.quiet <= 0 && $('place').textContent !== text) $('place').textContent = text;
     this.credit.show((this.chosen ? this.city.buildings.get(this.chosen) : hit)?.record ?? null);
     const hash = toHash({

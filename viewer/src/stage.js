@@ -1,7 +1,7 @@
 // The stage: renderer, camera, sky, street, and what each block adds to the ground.
 
 import {
-  Box3, BufferGeometry, Float32BufferAttribute, FogExp2, LineBasicMaterial, LineSegments, Mesh,
+  Box3, BufferGeometry, Float32BufferAttribute, FogExp2, Group, LineBasicMaterial, LineSegments, Mesh,
   PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { acceleratedRaycast } from 'three-mesh-bvh';
@@ -30,7 +30,8 @@ export class Stage {
     this.scene.fog = new FogExp2(HORIZON, HAZE);
     this.dome = sky();
     this.props = new Props();
-    this.ground = street();
+    this.street = street();
+    this.ground = new Group().add(this.street); // street, pavement, and what lies at walls' feet
     this.scene.add(this.dome, this.ground, this.props.group);
     this.box = new Box3();
     this.raised = [];
@@ -69,16 +70,18 @@ export class Stage {
 
   /**
    * `height` is 0 on the street and 1 in the air, where haze thins and names appear. What is
-   * drawn for scale stands about `feet`, and not where a photograph lies over the view.
+   * drawn for scale stands about `feet`, and not where a photograph lies `over` the view; the
+   * ground is not drawn for a camera as `low` as itself.
    */
-  draw(height, feet, then) {
+  draw(height, feet, { over = false, low = false } = {}) {
     const { camera } = this;
     camera.far = FAR_M[0] + (FAR_M[1] - FAR_M[0]) * height;
-    this.scene.fog.density = then ? 0 : HAZE * (1 - 0.9 * height);
+    this.scene.fog.density = over ? 0 : HAZE * (1 - 0.9 * height);
     fade(this.names, height);
-    this.props.group.visible = !then;
+    this.props.group.visible = !over;
+    this.ground.visible = !low;
     this.props.gather(feet, this.raised);
-    this.ground.position.set(camera.position.x, 0, camera.position.z);
+    this.street.position.set(camera.position.x, 0, camera.position.z);
     this.dome.position.copy(camera.position);
     this.renderer.render(this.scene, camera);
   }
@@ -91,7 +94,7 @@ export class Stage {
       const cell = `${Math.floor(x / CELL_M)},${Math.floor(z / CELL_M)}`;
       cells.set(cell, [...(cells.get(cell) ?? []), ...this.#pavement(name, outlines)]);
     }
-    for (const parts of cells.values()) if (parts.length) this.scene.add(paved(parts));
+    for (const parts of cells.values()) if (parts.length) this.ground.add(paved(parts));
   }
 
   /** What paves a block, once per block. */
@@ -107,17 +110,17 @@ export class Stage {
   /** Adds what is known of a block only once its model is there. */
   settle(block, shapes) {
     this.paveAll([[block.name, [outlineOf(shapes)]]]);
-    if (this.settled.has(block.name)) return;
+    this.unsettle(block); // a finer model may have come
     const feet = [shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35)];
     this.settled.set(block.name, feet);
-    this.scene.add(...feet);
+    this.ground.add(...feet);
     for (const { top } of shapes) this.box.max.y = Math.max(this.box.max.y, top);
   }
 
   /** Takes away what came with a block's model. */
   unsettle(block) {
     for (const one of this.settled.get(block.name) ?? []) {
-      this.scene.remove(one);
+      this.ground.remove(one);
       one.geometry.dispose();
       one.material.dispose();
     }

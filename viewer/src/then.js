@@ -7,6 +7,7 @@ import { local } from './panel.js';
 import { nameOf } from './words.js';
 
 const MARGIN_PX = 12;
+const LOWEST_M = 0.3; // of a camera: below, the front's foot was misplaced
 
 /** Where a photo's camera stands in the city: `{ position, quaternion }`, as three.js looks. */
 export function stationOf({ position_m: at, block_from_camera: rows }, frame) {
@@ -29,8 +30,11 @@ export function photoOf(building, key = null) {
 /** What is said beneath: how far off he stood, how surely that is known, what does not agree. */
 export function told({ position_m: at, position_sd_m: sd, roof_m: roof }, record) {
   const words = [];
+  const high = at[2] >= LOWEST_M
+    ? `the camera ${at[2].toFixed(1)} m above the ground`
+    : 'how high is not known, for the foot of the front is hidden in the photograph';
   const spread = Number.isFinite(sd) ? `, give or take ${sd < 1 ? sd.toFixed(1) : sd.toFixed(0)} m` : '';
-  words.push(`Where the photographer stood${spread}; the camera ${at[2].toFixed(1)} m above the ground.`);
+  words.push(`Where the photographer stood${spread}; ${high}.`);
   const off = record.height_m - roof;
   if (Math.abs(off) > 0.12 * roof) {
     words.push(`This photograph makes the front ${roof.toFixed(0)} m high, the model has it ${record.height_m.toFixed(0)} m.`);
@@ -71,6 +75,11 @@ export class Then {
     this.bar.hidden = false;
     this.picture.hidden = true; // until one has arrived
     this.fit();
+  }
+
+  /** Whether the camera would stand in or below the street, which then can't be drawn. */
+  get low() {
+    return this.on && this.camera.position_m[2] < LOWEST_M;
   }
 
   /** The model has taken the camera's place: the photograph may appear. */

@@ -34,6 +34,17 @@ export function show(camera, { position, quaternion, frustum: { left, right, top
   camera.updateMatrixWorld();
 }
 
+/** The view that a camera shows. */
+export function shownBy({ position, quaternion, projectionMatrixInverse: inverse, near }) {
+  const edge = (x, y) => new Vector3(x, y, -1).applyMatrix4(inverse).divideScalar(near);
+  const [low, high] = [edge(-1, -1), edge(1, 1)];
+  return {
+    position: position.clone(),
+    quaternion: quaternion.clone(),
+    frustum: { left: low.x, right: high.x, top: high.y, bottom: low.y },
+  };
+}
+
 /** A way from a view that was shown to the one that is wanted now. */
 export class Flight {
   constructor() {
