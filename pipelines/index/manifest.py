@@ -36,6 +36,7 @@ PHOTO: Final = pa.schema(
 )
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
+TOLD: Final = ("date", "source", "year")  # columns there only where a list fills them
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
 BATCH: Final = 1000  # rows
 DIGITS: Final = 9
@@ -261,7 +262,7 @@ def checked(
             f"{name} lacks the columns {', '.join(missing)}: it has "
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
-    unknown = [one for one in names if one not in SCHEMA.names]
+    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD)]
     warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
     results = [
         usable(number, row)

@@ -7,6 +7,8 @@ import { KERB_M, SIDEWALK_M } from './ground.js';
 const LETTER_M = 6.5;
 const FROM_KERB_M = 4.8;
 const APART_M = 45; // the same name is not written twice within this distance
+const LEGIBLE_M = 170; // from so far a name can be read
+const LARGEST = 2.4;
 const INK = '#f8f4ea';
 
 const ON_M = 22; // of the line that a name is written on: there one is on that street
@@ -55,9 +57,11 @@ export function nearestName(planes, [x, z]) {
   return least < ON_M ? planes[far.indexOf(least)].name : '';
 }
 
-/** Fades all names in or out. */
-export function fade(planes, opacity) {
+/** Fades all names in or out; seen from far, they are written larger. */
+export function fade(planes, opacity, distance) {
+  const size = Math.max(1, Math.min(LARGEST, distance / LEGIBLE_M));
   for (const plane of planes) {
+    plane.scale.set(size, 1, size);
     plane.visible = opacity > 0.02;
     plane.material.opacity = 0.9 * opacity;
   }

@@ -71,7 +71,7 @@ export class Page {
     this.walker.pose = { x, z, yaw: 0, pitch: 0 };
     const linked = location.hash.length > 1;
     if (linked) this.guide.follow(location.hash);
-    const settled = this.firstBlock();
+    const settled = this.firstBlock(linked);
     stage.renderer.setAnimationLoop((time) => this.frame(time));
     loading.models(city);
     const block = await settled;
@@ -81,9 +81,10 @@ export class Page {
     if (!this.panel.open) $('view').focus({ preventScroll: true });
   }
 
-  /** Resolves to the first block that stands, or to another where it can't be had. */
-  firstBlock() {
+  /** Resolves to the first block once it stands; to another where `any` will do, or it can't be had. */
+  firstBlock(any) {
     const { city, stage } = this;
+    const first = city.record.blocks.find(({ name }) => city.frames.has(name));
     const standing = [];
     return new Promise((resolve, reject) => {
       city.onBlock = (block) => {
@@ -93,7 +94,7 @@ export class Page {
         this.guide.came(block);
         this.wake();
         standing.push(block);
-        resolve(block);
+        if (any || !first || block === first || city.errors.length) resolve(block);
       };
       city.onGone = (block) => stage.unsettle(block);
       city.onError = (error) => {
@@ -194,7 +195,8 @@ export class Page {
   tell() {
     const hit = this.flying ? null : faced(this.city, this.stage.camera.position, this.walker.yaw);
     const shot = this.guide.then.on ? this.city.buildings.get(this.chosen) : null;
-    const text = shot ? `As ${nameOf(shot.record)} was photographed` : where(hit, this.stage.streetAt(this.walker.feet));
+    const text = shot ? `As ${nameOf(shot.record)} was photographed`
+      : this.flying ? 'From above' : where(hit, this.stage.streetAt(this.walker.feet));
     if (this.quiet <= 0 && $('place').textContent !== text) $('place').textContent = text;
     this.credit.show((this.chosen ? this.city.buildings.get(this.chosen) : hit)?.record ?? null);
     const hash = toHash({

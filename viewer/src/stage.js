@@ -77,7 +77,7 @@ export class Stage {
     const { camera } = this;
     camera.far = FAR_M[0] + (FAR_M[1] - FAR_M[0]) * height;
     this.scene.fog.density = over ? 0 : HAZE * (1 - 0.9 * height);
-    fade(this.names, height);
+    fade(this.names, height, camera.position.y);
     this.props.group.visible = !over;
     this.ground.visible = !low;
     this.props.gather(feet, this.raised);
