@@ -61,7 +61,7 @@ def model(name: str, origin_m: tuple[float, float]) -> site.BlockModel:
         block,
         fronts=sample_block.fronts(name),
         assignments=sample_block.assignments(name),
-        seen=(),
+        seen=sample_block.seen(name),
         stood={
             wall.texture: stood(
                 float(np.hypot(*np.subtract(wall.end_m, wall.start_m))), one.height_m

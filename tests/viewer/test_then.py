@@ -35,6 +35,7 @@ def calm(visit: Visit) -> Iterator[None]:
     visit.ask("nostalgin.hold()")
     visit.ask("nostalgin.setEvidence(false); nostalgin.setBird(false)")
     visit.ask("nostalgin.page.guide.moved(); nostalgin.page.panel.close()")
+    arrive(visit)
     yield
     visit.ask("nostalgin.page.guide.moved(); nostalgin.page.panel.close()")
 

@@ -173,6 +173,7 @@ export class Page {
       this.bird.aim(camera);
       view = between(view, viewOf(camera, this.stage.lens.fov), MathUtils.smootherstep(this.height, 0, 1));
     }
+    this.stage.reach(this.height);
     show(camera, this.guide.over(view));
   }
 

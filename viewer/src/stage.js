@@ -15,6 +15,7 @@ Mesh.prototype.raycast = acceleratedRaycast;
 
 const HAZE = 0.0042; // per metre, on the street
 const FAR_M = [800, 9000]; // on the street, where haze hides what is farther, and in the air
+const NEAR_M = [0.12, 4];
 const CELL_M = 400; // pavement of so large a square is one draw call
 const INK = 0x26241f;
 const SLOW_S = 0.045;
@@ -68,6 +69,12 @@ export class Stage {
     this.renderer.setPixelRatio(wanted * Math.min(devicePixelRatio, 2));
   }
 
+  /** Sees from as near to as far as one stands: names lie so flat on a street that depth has to be fine. */
+  reach(height) {
+    this.camera.near = NEAR_M[0] + (NEAR_M[1] - NEAR_M[0]) * height;
+    this.camera.far = FAR_M[0] + (FAR_M[1] - FAR_M[0]) * height;
+  }
+
   /**
    * `height` is 0 on the street and 1 in the air, where haze thins and names appear. What is
    * drawn for scale stands about `feet`, and not where a photograph lies `over` the view; the
@@ -75,7 +82,6 @@ export class Stage {
    */
   draw(height, feet, { over = false, low = false } = {}) {
     const { camera } = this;
-    camera.far = FAR_M[0] + (FAR_M[1] - FAR_M[0]) * height;
     this.scene.fog.density = over ? 0 : HAZE * (1 - 0.9 * height);
     fade(this.names, height, camera.position.y);
     this.props.group.visible = !over;
