@@ -117,13 +117,31 @@ class Elevation:
     evidence: EvidenceMap
     quad: Corners  # tl, tr, br, bl in photo pixels
     photo_from_elevation: Matrix3
-    vanishing_points: Homogeneous  # horizontal, then vertical; photo pixels
+    vanishing_points: Homogeneous  # horizontal, then vertical: A times unit vectors
     focal_px: float | None  # None where the view does not tell it
     aspect: float  # width / height
     vanishing_sd_deg: tuple[float, float]  # horizontal, vertical
     focal_sd_px: float | None
     aspect_sd: float
     method: str  # how: "two vanishing points", "upright camera assumed", ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standpoint:
+    """The camera of a photo, relative to one of its fronts.
+
+    Lengths are in widths of the front, from its lower left corner: right along it, up,
+    and out to the street.
+    """
+
+    size_px: tuple[int, int]  # width and height of the photo
+    photo_from_camera: Matrix3  # A: focal length and principal point, in photo pixels
+    focal_sd: float  # over the focal length
+    position: tuple[float, float, float]
+    position_sd: float  # on the ground: by focal length and direction, to first order
+    front_from_camera: Matrix3  # a rotation; the camera's axes are right, down, ahead
+    quad_px: Corners  # the front in the photo: tl, tr, br, bl
+    roof: float  # how high this view makes the front
 
 
 @dataclass(frozen=True, slots=True)

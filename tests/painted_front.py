@@ -21,6 +21,7 @@ class Painted:
     quads: list[np.ndarray]
     aspects: list[float]
     focal_px: float
+    planes: list[np.ndarray]  # across, down and the top left corner, seen by the camera
 
 
 def texture(aspect: float, rng: np.random.Generator, side: int = 700) -> np.ndarray:
@@ -61,7 +62,7 @@ def photograph(
     double[:2, 2] = 0.5
     corner = np.array([0.0, -0.1, 3.6])
     height = 2.6
-    quads, facades = [], []
+    quads, facades, planes = [], [], []
     start = corner if len(aspects) > 1 else corner - np.array([0.7, 0.0, 0.0])
     for i, aspect in enumerate(aspects):
         across, down = directions[1 + i] * height * aspect, -directions[0] * height
@@ -83,8 +84,10 @@ def photograph(
         alpha = seen.astype(np.float32)
         facades.append(Facade(i, 1.0, i == 0, 1.0, seen, seen, alpha))
         quads.append(quad)
+        planes.append(np.column_stack([across, down, top]))
     small = cv2.resize(image, (w, h), interpolation=cv2.INTER_AREA)
     grain = rng.normal(0, 3, SHAPE)
     noisy = np.clip(cv2.GaussianBlur(small, (0, 0), 0.6) + grain, 0, 255)
     photo = Photo(f"{seed:016x}", noisy.astype(np.uint8), frame)
-    return Painted(photo, Matted(tuple(facades), ()), quads, list(aspects), focal)
+    matted = Matted(tuple(facades), ())
+    return Painted(photo, matted, quads, list(aspects), focal, planes)

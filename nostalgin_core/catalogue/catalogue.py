@@ -52,13 +52,14 @@ ALIASES: Final[Mapping[str, tuple[str, ...]]] = {
     "other_street": ("alternative_street_name",),
     "built": ("year_built",),
     "taken": ("date", "taken"),
+    "source": ("source", "source_url", "record_url"),
 }
 UNUSED: Final = frozenset(  # the archive's columns that say nothing about place or size
     {
         *("delete", "borough", "qc", "flagged", "notes", "landmark", "roll_number"),
         *("alternative_block_number", "alternative_lot_number", "zip_code"),
         *("complete_address", "condition_hole_punch_deteriorated_tape"),
-        *("year_altered1", "year_altered2", "rights", "source_url"),
+        *("year_altered1", "year_altered2", "rights"),
     }
 )
 FIRST_ROW: Final = 2

@@ -33,6 +33,9 @@ class Entry:
     side: int | None
     order: float | None
     credit: str
+    taken: str  # the year or date of the photo, as it is written
+    built: str  # the year of the building
+    source: str  # the address of the archive's own record
 
 
 def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
@@ -68,6 +71,9 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         side=side,
         order=order,
         credit=cells.get("credit", ""),
+        taken=cells.get("taken", ""),
+        built="" if later else cells.get("built", ""),
+        source=cells.get("source", ""),
     )
     return made, doubts + more
 

@@ -1,9 +1,11 @@
 """Each facade is seen straight on: lines, vanishing points, quad, focal length, aspect.
 
-In: a `Photo` and what was matted. Out: an `Elevation` or a `Rejection` a facade.
+In: a `Photo` and what was matted. Out: an `Elevation` or a `Rejection` a facade, and
+the `Standpoint` of the camera that each elevation tells.
 Paper: section 3.3. Open `rectify` first, then `orient`.
 """
 
 from nostalgin_core.rectify.rectify import rectify
+from nostalgin_core.rectify.standpoint import standpoint
 
-__all__ = ["rectify"]
+__all__ = ["rectify", "standpoint"]

@@ -4,8 +4,17 @@ from typing import Any, Final
 
 import pyarrow as pa
 
-from nostalgin_core import steps
-from nostalgin_core.records import Elevation, Facade, Matted, Occluder, Rejection, Seen
+from nostalgin_core import rectify, steps
+from nostalgin_core.records import (
+    Elevation,
+    Facade,
+    Matted,
+    Occluder,
+    Photo,
+    Rejection,
+    Seen,
+    Standpoint,
+)
 from pipelines.store import tables
 
 
@@ -16,9 +25,9 @@ def joined(*records: type) -> pa.Schema:
 
 
 MATTED: Final = joined(Facade, Occluder)
-RECTIFIED: Final = joined(Elevation, Seen, Rejection)
+RECTIFIED: Final = joined(Elevation, Seen, Standpoint, Rejection)
 THUMBNAIL: Final = pa.schema([pa.field("picture", pa.binary())])
-NUMBERS: Final = [field.name for field in joined(Seen, Rejection)]
+NUMBERS: Final = [field.name for field in joined(Seen, Standpoint, Rejection)]
 
 
 def matted_table(result: Matted) -> pa.Table:
@@ -37,22 +46,27 @@ def matted_from(table: pa.Table) -> Matted:
 
 
 def rectified_table(
-    key: str, result: Matted, views: tuple[Elevation | Rejection, ...]
+    picture: Photo, result: Matted, views: tuple[Elevation | Rejection, ...]
 ) -> pa.Table:
     """Write a row for each facade: its elevation and numbers, or its rejection."""
+    frame, shape = picture.frame, picture.image.shape
     rows: list[dict[str, Any]] = []
     for facade, view in zip(result.facades, views, strict=True):
         row = tables.to_row(view)
         if isinstance(view, Elevation):
-            row |= tables.to_row(steps.seen(key, facade, view))
+            stood = rectify.standpoint(view, frame=frame, shape=(shape[0], shape[1]))
+            row |= tables.to_row(steps.seen(picture.key, facade, view))
+            row |= tables.to_row(stood)
         rows.append(row)
     return pa.Table.from_pylist(rows, RECTIFIED)
 
 
-def seen_from(table: pa.Table) -> list[Seen | Rejection]:
-    """Read the numbers of each facade, or its rejection."""
+def seen_from(table: pa.Table) -> list[tuple[Seen, Standpoint] | Rejection]:
+    """Read the numbers of each facade and where its camera stood, or its rejection."""
     return [
-        tables.from_row(Seen if row["reason"] is None else Rejection, row)
+        (tables.from_row(Seen, row), tables.from_row(Standpoint, row))
+        if row["reason"] is None
+        else tables.from_row(Rejection, row)
         for row in table.to_pylist()
     ]
 

@@ -36,7 +36,8 @@ class FacadeRows:
         """Write one row."""
         key = self.versions.rectify_key(ref.photo.sha256)
         where = self.versions.path("rectify", key)
-        return [{"name": ref.photo.name, "elevations": where} | tables.to_row(ref.seen)]
+        known = tables.to_row(ref.seen) | tables.to_row(ref.standpoint)
+        return [{"name": ref.photo.name, "elevations": where} | known]
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,7 @@ def record(one: Placed) -> str:
         fronts=one.settled.fronts,
         assignments=one.settled.assignments,
         seen=[ref.seen for ref in one.facades],
+        stood={texture_of(ref): ref.standpoint for ref in one.facades},
         photos=told,
     )
     return json.dumps(known, sort_keys=True)

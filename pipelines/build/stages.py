@@ -15,7 +15,14 @@ import pyarrow as pa
 from apache_beam import pvalue
 
 from nostalgin_core import inpaint, matte, quantise, rectify, segment
-from nostalgin_core.records import Elevation, Instance, Photo, Rejection, Seen
+from nostalgin_core.records import (
+    Elevation,
+    Instance,
+    Photo,
+    Rejection,
+    Seen,
+    Standpoint,
+)
 from nostalgin_core.steps import rounded
 from pipelines import site
 from pipelines.build import artifacts
@@ -32,6 +39,7 @@ class FacadeRef:
 
     photo: PhotoRef
     seen: Seen
+    standpoint: Standpoint  # of the photo's camera
 
     @property
     def key(self) -> str:
@@ -149,7 +157,7 @@ def rectified(ref: PhotoRef, bench: Bench) -> list[FacadeRef | Rejection]:
         again = partial(matted, ref, bench)
         result = artifacts.matted_from(bench.read(before, again))
         views = tuple(map(rounded, rectify.rectify(picture, result)))
-        return artifacts.rectified_table(picture.key, result, views)
+        return artifacts.rectified_table(picture, result, views)
 
     rejection = bench.keep(path, make)
     if rejection is not None:
@@ -157,7 +165,7 @@ def rectified(ref: PhotoRef, bench: Bench) -> list[FacadeRef | Rejection]:
     rows = bench.read(path, partial(bench.keep, path, make), artifacts.NUMBERS)
     outcomes = artifacts.seen_from(rows)
     return [
-        named(one, ref.name) if isinstance(one, Rejection) else FacadeRef(ref, one)
+        named(one, ref.name) if isinstance(one, Rejection) else FacadeRef(ref, *one)
         for one in outcomes
     ]
 

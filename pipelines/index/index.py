@@ -4,7 +4,7 @@ import hashlib
 import os
 import re
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -81,8 +81,10 @@ def index(
     rows, homeless = paired(names, shown, fronts, every=not blocks)
     root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
     credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
+    more = told(entries, shown)
     cells = [
         manifest.row_of(photo, front, root=root, credit=credits_of.get(photo, credit))
+        | more(photo, front)
         for photo, front in rows
     ]
     kept = [] if mended is None else [copied(store, *mended)]
@@ -176,6 +178,33 @@ def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
     """Leave out what is said about rows that were not asked for."""
     named = [(re.search(r" row (\d+):", warning), warning) for warning in warnings]
     return [text for row, text in named if row is None or int(row[1]) in rows]
+
+
+def told(
+    entries: Sequence[Entry], shown: Mapping[str, Sequence[Entry]]
+) -> Callable[[str, Front | None], dict[str, str]]:
+    """Tell what a list says beside place and size: columns that some row fills.
+
+    `date` and `source` are a photo's, `year` is a building's.
+    """
+    built = {(one.block, one.lot): one.built for one in reversed(entries) if one.built}
+    some = {
+        "date": any(one.taken for one in entries),
+        "source": any(one.source for one in entries),
+        "year": bool(built),
+    }
+
+    def of(photo: str, front: Front | None) -> dict[str, str]:
+        own = shown.get(photo, ())
+        lot = (front.block, front.lot) if front else ("", "")
+        cells = {
+            "date": next((one.taken for one in own if one.taken), ""),
+            "source": next((one.source for one in own if one.source), ""),
+            "year": built.get(lot, ""),
+        }
+        return {name: cell for name, cell in cells.items() if some[name]}
+
+    return of
 
 
 def first_credit(entries: Sequence[Entry]) -> str:

@@ -36,7 +36,8 @@ PHOTO: Final = pa.schema(
 )
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
-OPTIONAL: Final = ("rights", "source_url")  # kept as written, and told in the models
+# Columns of a photograph or building that are there only where a list fills them.
+TOLD: Final = ("rights", "date", "source_url", "year")
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
 BATCH: Final = 1000  # rows
 DIGITS: Final = 9
@@ -262,7 +263,7 @@ def checked(
             f"{name} lacks the columns {', '.join(missing)}: it has "
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
-    unknown = [one for one in names if one not in (*SCHEMA.names, *OPTIONAL)]
+    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD)]
     warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
     results = [
         usable(number, row)

@@ -87,7 +87,7 @@ def models(
     photos = runs.read_table(store, run, "photos")
     keys = {(row["root"], row["name"]): row["key"] for row in photos}
     shown = [(row, keys.get((rooted(row.root, store.root), row.photo))) for row in rows]
-    taken, whose = of_buildings(shown), rights_of(shown)
+    taken, words, built = of_buildings(shown), words_of(shown), years(rows)
     stand = volumes(runs.read_table(store, run, "buildings"))
     ordered = sorted(blocks, key=lambda row: natural(row["block"]))
     lying = {row["block"]: row for row in placed.rows}
@@ -97,8 +97,9 @@ def models(
         place, turn = placed.spots.get(row["block"], (None, move.turn_rad))
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
+            building.update(built.get(building["id"], {}))
             for photo in building["photos"]:  # it says whose the block's photos are
-                photo.update(whose.get(photo["key"], {}))
+                photo.update(words.get(photo["key"], {}))
             there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo
@@ -136,23 +137,34 @@ def of_buildings(
         if row.front is not None and key is not None:
             photo = {"key": key, "used": False, "caption": row.photo}
             building = f"{row.front.block}-{row.front.lot}"
-            told[building][key] = photo | rights(row)
+            told[building][key] = photo | said(row)
     return {building: list(own.values()) for building, own in told.items()}
 
 
-def rights_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str]]:
-    """Tell whom each photo is credited to, its licence and its record, by its key."""
-    told: dict[str, dict[str, str]] = {}
+def words_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str]]:
+    """Tell whom each photo is credited to, by its key, and what else is said of it."""
+    words: dict[str, dict[str, str]] = {}
     for row, key in shown:
         if key is not None:
-            told.setdefault(key, rights(row))
-    return told
+            words.setdefault(key, said(row))
+    return words
 
 
-def rights(row: Row) -> dict[str, str]:
-    """Tell a photo's credit, and what else is written of it."""
-    more = {"rights": row.licence, "source_url": row.source}
+def said(row: Row) -> dict[str, str]:
+    """Take what a row says of its photo: credit, licence, date, the archive's record."""
+    date = str(row.cells.get("date") or "").strip()
+    more = {"rights": row.licence, "source_url": row.source, "date": date}
     return {"credit": row.credit, **{name: word for name, word in more.items() if word}}
+
+
+def years(rows: Sequence[Row]) -> dict[str, dict[str, str]]:
+    """Tell when buildings were built, as far as their rows do."""
+    known: dict[str, dict[str, str]] = {}
+    for row in rows:
+        year = str(row.cells.get("year") or "").strip()
+        if row.front is not None and year:
+            known.setdefault(f"{row.front.block}-{row.front.lot}", {"year": year})
+    return known
 
 
 def volumes(buildings: list[dict[str, Any]]) -> dict[str, tuple[Any, Any]]:

@@ -13,9 +13,11 @@ from nostalgin_core.records import (
     Front,
     Rejection,
     Seen,
+    Standpoint,
     Texture,
     Wall,
 )
+from pipelines.site.camera import cameras
 
 Json = dict[str, Any]
 CENTIMETRE: Final = 2  # digits
@@ -28,28 +30,38 @@ def record(
     assignments: Iterable[Assignment],
     seen: Iterable[Seen],
     photos: Mapping[str, Mapping[str, Any]],
+    stood: Mapping[Texture, Standpoint] | None = None,
     rejections: Mapping[str, Sequence[Rejection]] | None = None,
     more: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Json:
     """Write what is known of a block.
 
     `photos` maps the key of each photo to what is told of it (`credit`, `caption`);
+    `stood` tells of facades where their photo's camera stood;
     `rejections` and `more` (a year, say) map building ids. Lengths are metres, rounded
     to centimetres; `photographed_share` is the share of a building's fronts, by width,
     that a camera saw; `height_low_m` to `height_high_m` hold the height in nine of ten
-    cases, and `height_assumed` says that nothing supports it.
+    cases, and `height_assumed` says that nothing supports it. `footprint_m` is
+    anticlockwise from the first front's left end.
     """
     by_id = {front.front_id: front for front in fronts}
     facades = {(one.photo, one.facade): one for one in seen}
+    ordered = sorted(assignments, key=lambda one: (-one.score, one.photo))
     showing: dict[str, list[str]] = {}
-    for one in sorted(assignments, key=lambda one: (-one.score, one.photo)):
+    for one in ordered:
         showing.setdefault(one.front_id, []).append(one.photo)
     return {
         "block": block.block,
         "outline_m": [_rounded(outline) for outline in block.outline_m],
         "buildings": [
             {
-                **_building(one, by_id, facades, showing, photos),
+                **_building(
+                    one,
+                    by_id,
+                    facades,
+                    showing,
+                    _placed(photos, cameras(one, ordered, stood or {})),
+                ),
                 "rejections": [
                     _rejection(why)
                     for why in (rejections or {}).get(one.building_id, ())
@@ -91,9 +103,20 @@ def _building(
         "width_assumed": bool(own and own[0].width_assumed),
         "height_m": round(building.height_m, CENTIMETRE),
         **_height(building),
+        "footprint_m": _rounded(building.footprint_m, CENTIMETRE),
         "assumed": building.assumed,
         "photographed_share": round(_share(building, facades), 3),
     }
+
+
+def _placed(
+    photos: Mapping[str, Mapping[str, Any]], placed: Mapping[str, Json]
+) -> dict[str, Json]:
+    """Add to what is told of photos where they were taken from."""
+    told = {key: dict(one) for key, one in photos.items()}
+    for key, one in placed.items():
+        told.setdefault(key, {})["camera"] = one
+    return told
 
 
 def _fronts(building: Building) -> list[Wall]:
@@ -134,8 +157,8 @@ def _photographed(wall: Wall, facades: Mapping[Texture, Seen]) -> float:
     return known.photographed if known else 0.0
 
 
-def _rounded(outline: np.ndarray) -> list[list[float]]:
-    return [[float(value) + 0.0 for value in row] for row in np.round(outline, 3)]
+def _rounded(outline: np.ndarray, digits: int = 3) -> list[list[float]]:
+    return [[float(value) + 0.0 for value in row] for row in np.round(outline, digits)]
 
 
 def _rejection(why: Rejection) -> Json:

@@ -34,7 +34,7 @@ from nostalgin_core.model import legend
 from pipelines.site.folder import Folder
 
 VIEWER: Final = Path(__file__).with_name("viewer_dist")
-THUMBNAIL_PX: Final = 1000  # a panel is 370 px wide, on screens of up to 2.7 px a point
+THUMBNAIL_PX: Final = 1600  # a screen's height, for the view from where it was taken
 SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
 
 SWAPPED: Final = ("site.json", "tileset.json")  # last, in this order

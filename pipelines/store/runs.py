@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import pyarrow as pa
 
-from nostalgin_core.records import Rejection, Seen
+from nostalgin_core.records import Rejection, Seen, Standpoint
 from pipelines.store import tables
 from pipelines.store.store import Store, key_of
 from pipelines.store.versions import Versions
@@ -30,7 +30,13 @@ NUMBERS: Final = pa.list_(pa.float64())
 PHOTOS: Final = columns(
     name=TEXT, root=TEXT, key=TEXT, sha256=TEXT, blocks=pa.list_(TEXT)
 )
-FACADES: Final = pa.schema([*columns(name=TEXT, elevations=TEXT), *tables.schema(Seen)])
+FACADES: Final = pa.schema(
+    [
+        *columns(name=TEXT, elevations=TEXT),
+        *tables.schema(Seen),
+        *tables.schema(Standpoint),  # of its photo's camera, in widths of the facade
+    ]
+)
 BUILDINGS: Final = columns(
     block=TEXT,
     building_id=TEXT,

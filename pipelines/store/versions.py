@@ -36,10 +36,10 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 6,
     "matte": 7,
-    "rectify": 5,
+    "rectify": 6,
     "inpaint": 5,
     "block": 4,
-    "thumbnail": 1,
+    "thumbnail": 2,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
     "segment": (photo, segment),

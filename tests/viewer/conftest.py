@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from nostalgin_core.records import Standpoint
 from pipelines.site import site
 from pipelines import view
 from pipelines.site.record import record
@@ -18,19 +20,56 @@ CHROMIUM = Path(os.environ.get("NOSTALGIN_CHROMIUM", "/usr/bin/chromium"))
 SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 HOSTILE = '<img src=x onerror="window.hacked=1"> & <b>Archive</b>'
 WITHOUT_PICTURE = "photo-1-7"
+RECORD = "https://archive.example/plate"
+
+
+def stood(width_m: float, height_m: float) -> Standpoint:
+    """Paint a quad: a camera 1.6 m high, 20 m off, before the left third, tilted up."""
+    tilt, turn = np.radians([8.0, -12.0])
+    up = np.array([[1, 0, 0], [0, np.cos(tilt), np.sin(tilt)], [0, -np.sin(tilt), np.cos(tilt)]])
+    round_ = np.array([[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]])
+    front_from_camera = np.diag([1.0, -1.0, -1.0]) @ round_ @ up
+    lens = np.array([[640.0, 0, 305.0], [0, 640.0, 390.0], [0, 0, 1]])
+    roof = height_m / width_m
+    position = np.array([0.3, 1.6 / width_m, 20.0 / width_m])
+    corners = np.array([[0, roof, 0], [1, roof, 0], [1, 0, 0], [0, 0, 0]])
+    seen = (corners - position) @ front_from_camera @ lens.T
+    return Standpoint(
+        size_px=(600, 800),
+        photo_from_camera=lens,
+        focal_sd=0.1,
+        position=(0.3, 1.6 / width_m, 20.0 / width_m),
+        position_sd=0.1,
+        front_from_camera=front_from_camera,
+        quad_px=seen[:, :2] / seen[:, 2:],
+        roof=roof,
+    )
 
 
 def model(name: str, origin_m: tuple[float, float]) -> site.BlockModel:
     block, glb = sample_block.built(name)
     photos = {
-        one.photo: {"credit": HOSTILE, "caption": f"Plate {one.photo}"}
+        one.photo: {
+            "credit": HOSTILE,
+            "caption": f"Plate {one.photo}",
+            "source_url": f"{RECORD}/{one.photo}",
+            "date": "about 1940",
+        }
         for one in sample_block.assignments(name)
     }
     known = record(
         block,
         fronts=sample_block.fronts(name),
         assignments=sample_block.assignments(name),
-        seen=(),
+        seen=sample_block.seen(name),
+        stood={
+            wall.texture: stood(
+                float(np.hypot(*np.subtract(wall.end_m, wall.start_m))), one.height_m
+            )
+            for one in block.buildings
+            for wall in one.walls
+            if wall.texture and wall.evidence is None
+        },
         photos=photos,
     )
     low, high = sample_block.bounds(block)

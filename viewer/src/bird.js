@@ -25,6 +25,8 @@ export class Bird {
     const box = new Box3().setFromPoints(points);
     box.getCenter(this.target).setY(0);
     const eye = camera.clone();
+    eye.far = 1e5;
+    eye.updateProjectionMatrix(); // the walker's may be a photograph's
     const up = Math.tan(MathUtils.degToRad(camera.fov / 2));
     for (let turn = 0; turn < 4; turn++) {
       this.#approach(points, eye);

@@ -29,10 +29,13 @@ export class City {
     this.buildings = new Map(); // building id -> { record, block, shape }
     this.errors = [];
     this.onBlock = () => {};
+    this.onGone = () => {};
+    this.standing = new Map(); // block -> its meshes that are loaded
+    this.extents = []; // of blocks, on the ground, for `near`
     this.nearby = new OrthographicCamera(-NEAR_M, NEAR_M, NEAR_M, -NEAR_M, 1, 2000);
     for (const block of record.blocks) {
       for (const building of block.buildings) {
-        this.buildings.set(String(building.id), { record: building, block, shape: null });
+        this.buildings.set(String(building.id), { record: building, block, shape: null, detail: 0 });
       }
     }
     tiles.setCamera(this.nearby);
@@ -63,11 +66,12 @@ export class City {
   arrange(root) {
     const content = new Map();
     collect(root, new Matrix4(), content);
-    // districts may lie in files of their own, so site.json tells every block's frame
-    const globe = root.transform ? new Matrix4().fromArray(root.transform) : new Matrix4();
-    const worlds = this.record.blocks.map((block) =>
-      block.frame ? globe.clone().multiply(new Matrix4().fromArray(block.frame)) : content.get(block.uri),
-    );
+    const [known] = this.record.blocks.map(({ frame }) => frame);
+    if (known) {
+      this.#arrangeBy(known, root);
+      return;
+    }
+    const worlds = this.record.blocks.map((block) => content.get(block.uri)); // none in a nested tileset
     const first = worlds.find(Boolean) ?? new Matrix4();
     const city = Y_UP_FROM_Z_UP.clone().multiply(first.clone().invert());
     city.decompose(this.tiles.group.position, this.tiles.group.quaternion, this.tiles.group.scale);
@@ -75,8 +79,57 @@ export class City {
     const zUpFromYUp = Y_UP_FROM_Z_UP.clone().invert();
     this.record.blocks.forEach((block, i) => {
       if (!worlds[i]) return;
-      this.frames.set(block.name, city.clone().multiply(worlds[i]).multiply(zUpFromYUp));
+      this.#frame(block, city.clone().multiply(worlds[i]).multiply(zUpFromYUp));
     });
+  }
+
+  /** Lays the city by the frames that its record gives: city_from_block, column by column, z up. */
+  #arrangeBy(first, root) {
+    const level = Y_UP_FROM_Z_UP.clone().multiply(new Matrix4().fromArray(first).invert());
+    const rooted = new Matrix4().fromArray(root.transform ?? new Matrix4().elements).invert();
+    level.clone().multiply(rooted)
+      .decompose(this.tiles.group.position, this.tiles.group.quaternion, this.tiles.group.scale);
+    this.group.updateMatrixWorld(true);
+    const zUpFromYUp = Y_UP_FROM_Z_UP.clone().invert();
+    for (const block of this.record.blocks) {
+      if (block.frame) this.#frame(block, level.clone().multiply(new Matrix4().fromArray(block.frame)).multiply(zUpFromYUp));
+    }
+  }
+
+  /** Keeps where a block lies. */
+  #frame(block, matrix) {
+    this.frames.set(block.name, matrix);
+    const outlines = (block.outline_m ?? []).filter((outline) => outline.length);
+    const [xs, zs] = [0, 1].map((i) => outlines.flatMap((one) => this.placed(block, one).map((p) => p[i])));
+    this.extents.push({
+      block, low: [Math.min(...xs), Math.min(...zs)], high: [Math.max(...xs), Math.max(...zs)],
+    });
+  }
+
+  /** The buildings of blocks that reach within `reach` metres of [x, z]. */
+  near([x, z], reach) {
+    const within = ({ low, high }) => !(x < low[0] - reach || x > high[0] + reach
+      || z < low[1] - reach || z > high[1] + reach);
+    return this.extents.filter((one) => within(one))
+      .flatMap(({ block }) => block.buildings.map(({ id }) => this.buildings.get(String(id))));
+  }
+
+  /** A building's front by its footprint alone, as `survey` tells walls; null where nothing is known. */
+  wallOf({ record, block }) {
+    if (!record.footprint_m || !this.frames.has(block.name)) return null;
+    const [a, b] = this.placed(block, record.footprint_m);
+    const [dx, dz] = [b[0] - a[0], b[1] - a[1]];
+    const length = Math.hypot(dx, dz) || 1;
+    return { a, b, out: [-dz / length, dx / length], bottom: 0, top: record.height_m ?? 14, kind: 'plain' };
+  }
+
+  /** Where a building stands, [x, z], as far as that is known; or null. */
+  placeOf(found) {
+    const wall = this.wallOf(found);
+    if (wall) return [(wall.a[0] + wall.b[0]) / 2, (wall.a[1] + wall.b[1]) / 2];
+    const { block } = found;
+    const known = this.frames.has(block.name) && block.outline_m?.length;
+    return known ? this.placed(block, block.outline_m[0])[0] : null;
   }
 
   /** The middle of the first block, as far as the tileset tells it. */
@@ -108,24 +161,47 @@ export class City {
 
   #enter(scene, tile) {
     place(scene, this.tiles.group.matrixWorld);
-    const block = this.record.blocks.find((one) => [one.uri, one.coarse].some((uri) => uri && tile.content.uri.endsWith(uri)));
     const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
     const mesh = united(scene, assumed, this.keys);
-    if (!mesh) return;
+    if (!mesh) {
+      scene.traverse((one) => { // volumes that stand for what is far
+        if (one.isMesh) one.material = surface(one);
+      });
+      return;
+    }
     place(scene, this.tiles.group.matrixWorld);
     mesh.geometry.boundsTree = new MeshBVH(mesh.geometry);
     mesh.material = surface(mesh);
     this.walls.add(mesh);
+    const detail = mesh.material.map?.image?.width ?? 0; // of several models of a building the finest counts
     for (const [feature, shape] of survey(mesh)) {
       const building = this.buildings.get(mesh.userData.ids[feature]);
-      if (building) building.shape = shape;
+      if (building && (building.shape === null || detail >= building.detail)) Object.assign(building, { shape, detail });
     }
-    if (block) this.onBlock(block);
+    this.#welcome(mesh, scene, tile);
+  }
+
+  /** Tells of each block that a mesh holds buildings of; a coarse one may hold several. */
+  #welcome(mesh, scene, tile) {
+    const blocks = new Set(mesh.userData.ids.map((id) => this.buildings.get(id)?.block).filter(Boolean));
+    for (const block of blocks) {
+      if (!this.frames.has(block.name) && tile.content.uri.endsWith(block.uri)) {
+        this.#frame(block, scene.matrixWorld.clone());
+      }
+      this.standing.set(block, (this.standing.get(block) ?? new Set()).add(mesh));
+      if (this.frames.has(block.name)) this.onBlock(block);
+    }
   }
 
   #leave(scene) {
     scene.traverse((mesh) => {
       if (!this.walls.delete(mesh)) return;
+      for (const [block, meshes] of this.standing) {
+        if (!meshes.delete(mesh) || meshes.size) continue;
+        this.standing.delete(block);
+        for (const { id } of block.buildings) this.buildings.get(String(id)).detail = 0;
+        this.onGone(block);
+      }
       mesh.geometry.dispose();
       mesh.material.dispose();
       mesh.userData.evidence?.dispose();
@@ -134,7 +210,8 @@ export class City {
 }
 
 /** Reads site.json and starts to load the tileset that it names, both beside the page. */
-export async function open(base = '') {
+export async function open(base = '', tell = () => {}) {
+  tell('the list of buildings');
   const response = await fetch(`${base}site.json`);
   if (!response.ok) throw new Error(`site.json: ${response.status}`);
   const record = await response.json();
@@ -147,6 +224,7 @@ export async function open(base = '') {
     tiles.addEventListener('load-root-tileset', resolve, { once: true });
     tiles.addEventListener('load-error', ({ error, tile }) => tile || reject(error));
   });
+  tell('the plan of the city');
   tiles.update();
   await rooted;
   city.arrange(tiles.rootTileset.root);

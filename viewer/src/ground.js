@@ -2,9 +2,10 @@
 // shade where a wall meets the ground.
 
 import {
-  BufferGeometry, Color, Float32BufferAttribute, Group, Mesh, PlaneGeometry, ShaderMaterial, Shape,
+  BufferGeometry, Color, Float32BufferAttribute, Mesh, PlaneGeometry, ShaderMaterial, Shape,
   ShapeGeometry, UniformsLib, UniformsUtils, Path, DoubleSide,
 } from 'three';
+import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 
 import { anticlockwise, hull, widened } from './outline.js';
 
@@ -12,32 +13,38 @@ export const KERB_M = 0.15;
 export const SIDEWALK_M = 4; // a New York sidewalk of 13 feet
 const KERBSTONE_M = 0.22;
 const SHADE_M = 1.4;
+const KIND = { street: 0, sidewalk: 1, kerb: 2, face: 3, yard: 4 };
 
 /** The street plane, wide enough that fog hides its end. */
 export function street() {
-  const plane = new Mesh(new PlaneGeometry(4000, 4000).rotateX(-Math.PI / 2), stone('STREET'));
-  plane.position.y = -KERB_M;
-  return plane;
+  const plane = new PlaneGeometry(9000, 9000).rotateX(-Math.PI / 2).translate(0, -KERB_M, 0);
+  return new Mesh(of('street', plane), stone());
 }
 
 /**
  * Sidewalks, kerbs and yards of one block. `outlines` are rows of [x, z].
  *
- * Returns `{ group, walks }`: `walks` are the outlines within which feet stand raised.
+ * Returns `{ parts, walks }`: geometries for `paved`, and the outlines within which feet
+ * stand raised.
  */
 export function pavement(outlines) {
-  const group = new Group();
+  const parts = [];
   const walks = [];
   for (const outline of outlines) {
     const lots = anticlockwise(outline.map(([x, z]) => [x, -z])); // y up, as outlines want
     const kerb = widened(lots, SIDEWALK_M);
     const inner = widened(lots, SIDEWALK_M - KERBSTONE_M);
     const turn = bearing(lots);
-    group.add(flat(inner, lots, 'SIDEWALK', turn), flat(kerb, inner, 'KERB', turn));
-    group.add(flat(lots, null, 'YARD', turn), face(kerb));
+    parts.push(flat(inner, lots, 'sidewalk', turn), flat(kerb, inner, 'kerb', turn));
+    parts.push(flat(lots, null, 'yard', turn), face(kerb));
     walks.push(kerb.map(([x, y]) => [x, -y]));
   }
-  return { group, walks };
+  return { parts, walks };
+}
+
+/** One mesh, and so one draw call, of the pavement of many blocks. */
+export function paved(parts) {
+  return new Mesh(mergeGeometries(parts), stone());
 }
 
 /** An outline for a block whose record has none: the hull of its walls. */
@@ -98,7 +105,16 @@ function flat(outer, hole, kind, turn) {
     uv.push(c * x + s * y, c * y - s * x);
   }
   geometry.setAttribute('uv', new Float32BufferAttribute(uv, 2));
-  return new Mesh(geometry.rotateX(-Math.PI / 2), stone(kind));
+  return of(kind, geometry.rotateX(-Math.PI / 2));
+}
+
+/** A geometry without index whose vertices say what they are of. */
+function of(kind, geometry) {
+  const plain = geometry.index ? geometry.toNonIndexed() : geometry;
+  plain.deleteAttribute('normal');
+  const kinds = new Float32Array(plain.attributes.position.count).fill(KIND[kind]);
+  plain.setAttribute('kind', new Float32BufferAttribute(kinds, 1));
+  return plain;
 }
 
 /** The upright side of the kerb. */
@@ -113,30 +129,30 @@ function face(outline) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new Float32BufferAttribute(position, 3));
   geometry.setAttribute('uv', new Float32BufferAttribute(new Float32Array((position.length / 3) * 2), 2));
-  return new Mesh(geometry, stone('FACE'));
+  return of('face', geometry);
 }
 
-const materials = new Map();
+let material = null;
 
-function stone(kind) {
-  if (!materials.has(kind)) {
-    materials.set(kind, new ShaderMaterial({
-      defines: { [kind]: 1 },
-      uniforms: UniformsUtils.merge([UniformsLib.fog, { tone: { value: new Color(1, 0.985, 0.96) } }]),
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
-      fog: true,
-    }));
-  }
-  return materials.get(kind);
+function stone() {
+  material ??= new ShaderMaterial({
+    uniforms: UniformsUtils.merge([UniformsLib.fog, { tone: { value: new Color(1, 0.985, 0.96) } }]),
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    fog: true,
+  });
+  return material;
 }
 
 const VERTEX = `
 #include <common>
 #include <fog_pars_vertex>
+attribute float kind;
 varying vec2 vStone;
 varying vec2 vGround;
+varying float vKind;
 void main() {
+  vKind = kind;
   vec4 world = modelMatrix * vec4(position, 1.0);
   vGround = world.xz;
   vStone = uv;
@@ -152,6 +168,7 @@ const FRAGMENT = `
 uniform vec3 tone;
 varying vec2 vStone;
 varying vec2 vGround;
+varying float vKind;
 float hash(vec2 p) { p = fract(p * vec2(123.34, 456.21)); p += dot(p, p + 45.32); return fract(p.x * p.y); }
 float noise(vec2 p) {
   vec2 i = floor(p), f = fract(p);
@@ -169,27 +186,26 @@ float joint(float at, float every, float half_m) {
   return fade * (1.0 - smoothstep(half_m, half_m + wide * 1.3, d));
 }
 void main() {
-  float g = 0.0;
-  #ifdef STREET
-  g = 0.20 + 0.025 * grain(vGround, 9.0) + 0.03 * grain(vGround.yx, 2.3) + 0.05 * grain(vGround, 0.05)
-    + 0.03 * grain(vGround, 0.4);
-  #endif
-  #ifdef SIDEWALK
+  float g = 0.24; // the kerb's face
+  int kind = int(vKind + 0.5);
+  // widths of pixels are asked for outside the branches, where all have them
+  float wide = fwidth(vStone.x) + fwidth(vStone.y);
+  vec2 joints = vec2(joint(vStone.x, 1.52, 0.008), joint(vStone.y, 1.52, 0.008));
+  float edge = joint(vStone.x + vStone.y, 2.4, 0.008);
+  float fine = grain(vGround, 0.05), small = grain(vGround, 0.09), rough = grain(vGround, 0.4);
+  if (kind == 0) {
+  g = 0.20 + 0.025 * grain(vGround, 9.0) + 0.03 * grain(vGround.yx, 2.3) + 0.05 * fine
+    + 0.03 * rough;
+  } else if (kind == 1) {
   vec2 flag = floor(vStone / vec2(1.52, 1.52));
-  float far = 1.0 - smoothstep(0.15, 0.6, fwidth(vStone.x) + fwidth(vStone.y));
-  g = 0.385 + 0.045 * far * (hash(flag) - 0.5) + 0.05 * grain(vGround, 3.1) + 0.04 * grain(vGround, 0.06);
-  g *= 1.0 - 0.32 * max(joint(vStone.x, 1.52, 0.008), joint(vStone.y, 1.52, 0.008));
-  #endif
-  #ifdef KERB
-  g = 0.46 + 0.05 * grain(vGround, 0.09);
-  g *= 1.0 - 0.3 * joint(vStone.x + vStone.y, 2.4, 0.008);
-  #endif
-  #ifdef FACE
-  g = 0.24;
-  #endif
-  #ifdef YARD
-  g = 0.17 + 0.07 * grain(vGround, 2.0) + 0.04 * grain(vGround, 0.3);
-  #endif
+  float far = 1.0 - smoothstep(0.15, 0.6, wide);
+  g = 0.385 + 0.045 * far * (hash(flag) - 0.5) + 0.05 * grain(vGround, 3.1) + 0.04 * fine;
+  g *= 1.0 - 0.32 * max(joints.x, joints.y);
+  } else if (kind == 2) {
+  g = (0.46 + 0.05 * small) * (1.0 - 0.3 * edge);
+  } else if (kind == 4) {
+  g = 0.17 + 0.07 * grain(vGround, 2.0) + 0.04 * rough;
+  }
   gl_FragColor = vec4(tone * g, 1.0);
   #include <colorspace_fragment>
   #ifdef USE_FOG

@@ -2,6 +2,7 @@
 
 const WALK = { KeyW: [0, 1], ArrowUp: [0, 1], KeyS: [0, -1], ArrowDown: [0, -1], KeyA: [-1, 0], KeyD: [1, 0] };
 const TURN = { ArrowLeft: 1, ArrowRight: -1 };
+const SLIDES = /^(Arrow|Home|End|Page)/; // keys that a slider wants for itself
 const CLICK_PX = 6; // a press that moves less is a click
 const PINCH_PX = 26; // two fingers closing by so much are a notch of the wheel
 const ZOOM = { Equal: -1, NumpadAdd: -1, Minus: 1, NumpadSubtract: 1 };
@@ -15,6 +16,7 @@ export class Input {
     this.stick = [0, 0];
     this.used = false; // has anybody done anything yet?
     this.onClick = () => {};
+    this.onMove = () => {}; // somebody walks or looks round
     this.onKey = () => {};
     this.#keyboard();
     this.#pointer();
@@ -54,15 +56,17 @@ export class Input {
   }
 
   #keyboard() {
-    const typing = (target) => target.closest?.('input, textarea, select, dialog');
+    const typing = (target) => target.closest?.('input:not([type=range]), textarea, select, dialog');
+    const sliding = ({ target, code }) => target.type === 'range' && SLIDES.test(code);
     addEventListener('keydown', (event) => {
-      if (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (typing(event.target) || sliding(event) || event.ctrlKey || event.metaKey || event.altKey) return;
       const known = event.code in WALK || event.code in TURN;
       const scrolls = event.target.closest?.('aside') && event.code.startsWith('Arrow');
       if (known && !scrolls) {
         event.preventDefault();
         this.keys.add(event.code);
         this.used = true;
+        if (!event.repeat) this.onMove();
       } else if (event.code in ZOOM) this.zoom += ZOOM[event.code];
       else if (event.code.startsWith('Shift')) this.keys.add(event.code);
       else if (!event.repeat) this.onKey(event);
@@ -97,7 +101,9 @@ export class Input {
       const before = spread();
       const here = [event.clientX, event.clientY];
       down.set(event.pointerId, here);
+      const still = travelled < CLICK_PX;
       travelled += Math.abs(here[0] - last[0]) + Math.abs(here[1] - last[1]);
+      if (still && travelled >= CLICK_PX) this.onMove();
       if (before) this.zoom += (before - spread()) / PINCH_PX;
       else this.look = [this.look[0] + here[0] - last[0], this.look[1] + here[1] - last[1]];
     });
@@ -137,6 +143,7 @@ export class Input {
     };
     stick.addEventListener('pointerdown', (event) => {
       stick.setPointerCapture(event.pointerId);
+      this.onMove();
       set(event);
     });
     stick.addEventListener('pointermove', (event) => stick.hasPointerCapture(event.pointerId) && set(event));

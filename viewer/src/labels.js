@@ -7,44 +7,61 @@ import { KERB_M, SIDEWALK_M } from './ground.js';
 const LETTER_M = 6.5;
 const FROM_KERB_M = 4.8;
 const APART_M = 45; // the same name is not written twice within this distance
+const LEGIBLE_M = 170; // from so far a name can be read
+const LARGEST = 2.4;
 const INK = '#f8f4ea';
 
-/** A name, and the row of walls that stand on that street. */
-export function label(name, row) {
+const ON_M = 22; // of the line that a name is written on: there one is on that street
+
+/** A name, and the row of walls that stand on that street; null where `taken` says so. */
+export function label(name, row, taken = () => false) {
   const [{ a, out }] = row;
   const right = [out[1], -out[0]];
   const along = ([x, z]) => x * right[0] + z * right[1];
   const start = Math.min(...row.map((wall) => along(wall.a)));
   const end = Math.max(...row.map((wall) => along(wall.b)));
+  const depth = a[0] * out[0] + a[1] * out[1] + SIDEWALK_M + FROM_KERB_M;
+  const at = (s) => [out[0] * depth + right[0] * s, out[1] * depth + right[1] * s];
+  const [x, z] = at((start + end) / 2);
+  if (taken([x, z])) return null;
   const { texture, aspect } = written(name);
   const width = LETTER_M * aspect;
-  const depth = a[0] * out[0] + a[1] * out[1] + SIDEWALK_M + FROM_KERB_M;
-  const middle = (start + end) / 2;
   const plane = new Mesh(
     new PlaneGeometry(width, LETTER_M).rotateX(-Math.PI / 2),
     new MeshBasicMaterial({ map: texture, transparent: true, opacity: 0, depthWrite: false, fog: false }),
   );
-  plane.position.set(
-    out[0] * depth + right[0] * middle,
-    0.05 - KERB_M,
-    out[1] * depth + right[1] * middle,
-  );
+  plane.position.set(x, 0.05 - KERB_M, z);
   plane.rotation.y = Math.atan2(out[0], out[1]); // read from the street, facing the fronts
   plane.renderOrder = 1;
   plane.visible = false;
   plane.name = name;
+  plane.userData.line = [at(start), at(end)];
   return plane;
 }
 
-/** Whether a street's name stands near there already. */
-export function repeated(plane, others) {
-  return others.some((other) => other.name === plane.name
-    && other.position.distanceTo(plane.position) < APART_M);
+/** Whether a street's name stands near [x, z] already. */
+export function repeated(name, [x, z], others, apart = APART_M) {
+  return others.some((other) => other.name === name
+    && Math.hypot(other.position.x - x, other.position.z - z) < apart);
 }
 
-/** Fades all names in or out. */
-export function fade(planes, opacity) {
+/** The name whose street runs by [x, z], or an empty word. */
+export function nearestName(planes, [x, z]) {
+  const far = planes.map(({ userData: { line: [a, b] } }) => {
+    const way = [b[0] - a[0], b[1] - a[1]];
+    const t = ((x - a[0]) * way[0] + (z - a[1]) * way[1]) / Math.max(1e-9, way[0] ** 2 + way[1] ** 2);
+    const s = Math.max(0, Math.min(1, t));
+    return Math.hypot(a[0] + s * way[0] - x, a[1] + s * way[1] - z);
+  });
+  const least = Math.min(...far, Infinity);
+  return least < ON_M ? planes[far.indexOf(least)].name : '';
+}
+
+/** Fades all names in or out; seen from far, they are written larger. */
+export function fade(planes, opacity, distance) {
+  const size = Math.max(1, Math.min(LARGEST, distance / LEGIBLE_M));
   for (const plane of planes) {
+    plane.scale.set(size, 1, size);
     plane.visible = opacity > 0.02;
     plane.material.opacity = 0.9 * opacity;
   }

@@ -3,9 +3,13 @@
 import { api } from './api.js';
 import { open } from './city.js';
 import { fillLegend } from './legend.js';
+import { Loading } from './loading.js';
 import { Page } from './page.js';
 
+const loading = new Loading(document.getElementById('notice'));
+
 function complain(error) {
+  loading.end();
   const text = document.createElement('p');
   const missing = /json|404|Failed to fetch/.test(String(error));
   text.textContent = missing
@@ -16,12 +20,14 @@ function complain(error) {
 
 async function start() {
   // street names are painted once, so their letters have to be there
-  const [city] = await Promise.all([open(), document.fonts.load('600 72px Garamond').catch(() => [])]);
+  const letters = document.fonts.load('600 72px Garamond').catch(() => []);
+  const [city] = await Promise.all([open('', (what) => loading.tell(what)), letters]);
   document.title = `${city.record.title} · Nostalgin`;
   document.querySelector('#title h1').textContent = city.record.title;
   fillLegend(document.querySelector('#legend ul'));
   const page = new Page(city);
-  await page.begin();
+  await page.begin(loading);
+  loading.end();
   return page;
 }
 

@@ -1,8 +1,12 @@
 // A small plan, north up, with the walker in its middle.
 
+import { repeated } from './labels.js';
+
 const RADIUS_M = 95;
 const LARGEST_M = 120; // of a building, along a side
 const PAPER = '#e9e5da';
+const LETTER_M = 10;
+const APART_M = 110; // names that are alike
 
 export class Minimap {
   constructor(canvas) {
@@ -12,8 +16,10 @@ export class Minimap {
   }
 
   /** Draws anew only when something that it shows has changed. */
-  draw({ x, z, yaw }, city, raised, chosen, evidence) {
-    const state = [x.toFixed(1), z.toFixed(1), yaw.toFixed(0), city.loaded, raised.length, chosen, evidence];
+  draw({ x, z, yaw }, city, { raised, names }, chosen, evidence) {
+    const state = [
+      x.toFixed(1), z.toFixed(1), yaw.toFixed(0), city.loaded, raised.length, names.length, chosen, evidence,
+    ];
     if (state.join() === this.last) return;
     this.last = state.join();
     const { context: c, canvas } = this;
@@ -24,16 +30,37 @@ export class Minimap {
     c.setTransform(scale, 0, 0, scale, canvas.width / 2 - x * scale, canvas.height / 2 - z * scale);
     c.fillStyle = PAPER;
     for (const outline of raised) fill(c, outline);
-    for (const [id, { record, shape }] of city.buildings) {
+    for (const { record, shape } of city.near([x, z], RADIUS_M)) {
       if (!shape?.roofs.length || far(shape.roofs[0][0], x, z)) continue;
-      c.fillStyle = c.strokeStyle = id === chosen ? '#b8862b' : ink(record, evidence);
+      c.fillStyle = c.strokeStyle = String(record.id) === chosen ? '#b8862b' : ink(record, evidence);
       c.lineWidth = 0.4;
       for (const roof of shape.roofs) {
         fill(c, roof);
         c.stroke();
       }
     }
+    this.#inscribe(names, [x, z]);
     this.#arrow(yaw);
+  }
+
+  /** Writes the streets' names along them, the right way up. */
+  #inscribe(names, here) {
+    const { context: c } = this;
+    const written = [];
+    c.font = `600 ${LETTER_M}px Garamond, Georgia, serif`;
+    c.textAlign = 'center';
+    c.textBaseline = 'middle';
+    c.fillStyle = '#3a362f';
+    for (const plane of names) {
+      const place = beside(plane.userData.line, here);
+      if (far(place, ...here) || repeated(plane.name, place, written, APART_M)) continue;
+      written.push({ name: plane.name, position: { x: place[0], z: place[1] } });
+      c.save();
+      c.translate(...place);
+      c.rotate(upright(-plane.rotation.y));
+      c.fillText(plane.name, 0, 0);
+      c.restore();
+    }
   }
 
   #arrow(yaw) {
@@ -53,6 +80,22 @@ export class Minimap {
     c.stroke();
     c.fill();
   }
+}
+
+/** The point of a line nearest to one, so that a name stays on the plan. */
+function beside([a, b], [x, z]) {
+  const way = [b[0] - a[0], b[1] - a[1]];
+  const length = Math.hypot(...way) || 1;
+  const t = ((x - a[0]) * way[0] + (z - a[1]) * way[1]) / length;
+  const half = Math.min(35, length / 2);
+  const s = Math.max(half, Math.min(length - half, t)) / length;
+  return [a[0] + s * way[0], a[1] + s * way[1]];
+}
+
+/** An angle at which letters do not stand on their heads. */
+export function upright(angle) {
+  const turned = Math.atan2(Math.sin(angle), Math.cos(angle));
+  return Math.abs(turned) > Math.PI / 2 + 1e-6 ? turned + Math.PI : turned;
 }
 
 /** Whether a building lies so far off that nothing of it is on the plan. */

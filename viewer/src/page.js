@@ -1,24 +1,31 @@
-// The page: moves the walker, draws when something changed, and answers keys and clicks.
+// The page: moves the walker, draws when something changed, and says where one is.
 
-import { MathUtils, Quaternion, Raycaster, Vector2, Vector3 } from 'three';
+import { MathUtils } from 'three';
 
 import { Bird } from './bird.js';
-import { nameOfCode } from './evidence.js';
+import { Credit } from './credit.js';
 import { Finder } from './finder.js';
+import { Guide, calm } from './guide.js';
 import { Input } from './input.js';
+import { listen } from './keys.js';
 import { Minimap } from './minimap.js';
 import { shown } from './paint.js';
 import { Panel } from './panel.js';
-import { fromHash, toHash } from './pose.js';
+import { toHash } from './pose.js';
+import { shoot } from './shot.js';
+import { faced, picked, where } from './sight.js';
 import { Stage } from './stage.js';
-import { bestAzimuth, corners, frontFor, homeIn, nearest, poseBefore } from './vantage.js';
+import { bestAzimuth, corners, frontFor, homeIn } from './vantage.js';
+import { between, show, shownBy, viewOf } from './view.js';
 import { Walker, rows } from './walker.js';
 import { nameOf } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 const FLIGHT_S = 1.1;
 const LONGEST_STEP_S = 0.1;
+const LONGEST_PAST_S = 0.6;
 const SETTLING_FRAMES = 3; // after a change, so that a sharp picture stays
+const SAID_S = 6; // a message stays
 
 export class Page {
   constructor(city) {
@@ -28,20 +35,23 @@ export class Page {
     this.walker = new Walker();
     this.bird = new Bird();
     this.minimap = new Minimap($('plan').firstElementChild);
+    this.credit = new Credit($('credit'), city.record.blocks);
+    this.guide = new Guide(this);
     this.panel = new Panel($('panel'), {
-      onClose: () => this.mark(null),
-      onVisit: (record) => this.visit(String(record.id)),
+      onClose: () => this.guide.then.on || this.mark(null),
+      onVisit: (record) => this.guide.visit(String(record.id)),
+      onThen: (record, key) => this.guide.enter(String(record.id), key),
     });
-    this.finder = new Finder($('finder'), city, (id) => this.visit(id, true));
-    this.ray = new Raycaster();
-    this.ray.firstHitOnly = true;
+    this.finder = new Finder($('finder'), city, (id) => this.guide.visit(id, { show: true }));
     this.flying = false;
     this.height = 0; // 0 on foot, 1 in the air
+    this.fov = this.stage.lens.fov;
     this.chosen = null;
     this.home = null;
     this.held = false;
     this.said = 0;
     this.still = 0;
+    this.quiet = 0; // seconds that a message stays yet
     this.stage.scene.add(city.group);
     this.stage.camera.rotation.order = 'YXZ';
     city.tiles.setCamera(this.stage.camera);
@@ -50,32 +60,29 @@ export class Page {
   }
 
   /** Paves what the records tell, then waits for the first model to stand before it. */
-  async begin() {
+  async begin(loading) {
     const { city, stage } = this;
-    for (const block of city.record.blocks) {
-      if (block.outline_m?.length && city.frames.has(block.name)) {
-        stage.pave(block.name, block.outline_m.map((ring) => city.placed(block, ring)));
-      }
-    }
-    this.listen();
+    stage.paveAll(city.record.blocks
+      .filter((block) => block.outline_m?.length && city.frames.has(block.name))
+      .map((block) => [block.name, block.outline_m.map((ring) => city.placed(block, ring))]));
+    listen(this);
     this.resize();
-    const wished = fromHash(location.hash);
-    const middle = city.middle();
-    this.walker.pose = wished.pose ?? { x: middle.x, z: middle.z, yaw: 0, pitch: 0 };
-    if (wished.evidence) this.setEvidence(true);
-    const settled = this.firstBlock();
+    const { x, z } = city.middle();
+    this.walker.pose = { x, z, yaw: 0, pitch: 0 };
+    const linked = location.hash.length > 1;
+    if (linked) this.guide.follow(location.hash);
+    const settled = this.firstBlock(linked);
     stage.renderer.setAnimationLoop((time) => this.frame(time));
+    loading.models(city);
     const block = await settled;
     this.home = homeIn(this.city, block, this.walker.pose);
-    if (!wished.pose) this.walker.pose = this.home;
-    if (wished.bird) this.setBird(true, true);
-    if (wished.building && city.buildings.has(wished.building)) this.select(wished.building);
+    if (!linked) this.stand(this.home);
     document.body.classList.add('running');
-    $('view').focus({ preventScroll: true });
+    if (!this.panel.open) $('view').focus({ preventScroll: true });
   }
 
-  /** Resolves to the first block once it stands, or to another where it can't be had. */
-  firstBlock() {
+  /** Resolves to the first block once it stands; to another where `any` will do, or it can't be had. */
+  firstBlock(any) {
     const { city, stage } = this;
     const first = city.record.blocks.find(({ name }) => city.frames.has(name));
     const standing = [];
@@ -84,9 +91,12 @@ export class Page {
         const shapes = block.buildings.map(({ id }) => city.buildings.get(String(id)).shape);
         stage.settle(block, shapes.filter(Boolean));
         this.inscribe(block);
+        this.guide.came(block);
+        this.wake();
         standing.push(block);
-        if (block === first || city.errors.length) resolve(block);
+        if (any || !first || block === first || city.errors.length) resolve(block);
       };
+      city.onGone = (block) => stage.unsettle(block);
       city.onError = (error) => {
         if (standing.length) resolve(standing[0]);
         else if (city.errors.length >= city.record.blocks.length) reject(error);
@@ -106,25 +116,29 @@ export class Page {
   }
 
   frame(time) {
-    const dt = Math.min((time - (this.lastTime ?? time)) / 1000, LONGEST_STEP_S);
+    const past = Math.min((time - (this.lastTime ?? time)) / 1000, LONGEST_PAST_S);
+    const dt = Math.min(past, LONGEST_STEP_S);
     this.lastTime = time;
     if (this.held) return;
     if (this.input.used) document.body.classList.add('walked');
-    this.step(dt);
+    this.step(dt, past);
     this.city.update(this.walker.feet);
     if (!this.changed()) return;
     this.stage.pace(this.still === 0 ? dt : 0);
     this.draw();
   }
 
-  step(dt) {
+  /** `dt` is how long one walks, `past` how long one flies: a slow machine flies no slower. */
+  step(dt, past = dt) {
     const goal = this.flying ? 1 : 0;
     const left = Math.abs(goal - this.height);
     this.height += Math.sign(goal - this.height) * Math.min(left, dt / FLIGHT_S);
     if (this.flying) this.bird.step(dt, this.input);
     else this.walker.step(dt, this.input, this.city.walls);
+    this.guide.step(past);
     this.aim();
     this.said += dt;
+    this.quiet -= dt;
     if (this.said > 0.4) {
       this.said = 0;
       this.tell();
@@ -136,8 +150,9 @@ export class Page {
     const { camera } = this.stage;
     const { city } = this;
     const state = [
-      ...camera.matrixWorld.elements, camera.aspect, city.loaded, city.tiles.loadProgress,
-      shown.evidence.value, this.chosen, innerWidth, innerHeight, city.tiles.visibleTiles.size,
+      ...camera.matrixWorld.elements, ...camera.projectionMatrix.elements, city.loaded,
+      city.tiles.loadProgress, shown.evidence.value, this.chosen, innerWidth, innerHeight,
+      city.tiles.visibleTiles.size, this.guide.then.on,
     ].join();
     const same = state === this.state;
     this.state = state;
@@ -145,24 +160,33 @@ export class Page {
     return this.still < SETTLING_FRAMES;
   }
 
+  /** Sees to it that the next frame is drawn. */
+  wake() {
+    this.state = null;
+  }
+
   aim() {
     const { camera } = this.stage;
-    if (this.height < 1) this.walker.aim(camera);
+    this.walker.aim(camera);
+    let view = viewOf(camera, this.fov);
     if (this.height > 0) {
-      const from = { p: camera.position.clone(), q: camera.quaternion.clone() };
       this.bird.aim(camera);
-      if (this.height < 1) {
-        const t = MathUtils.smootherstep(this.height, 0, 1);
-        camera.position.lerpVectors(from.p, camera.position.clone(), t);
-        camera.quaternion.copy(new Quaternion().slerpQuaternions(from.q, camera.quaternion.clone(), t));
-      }
+      view = between(view, viewOf(camera, this.stage.lens.fov), MathUtils.smootherstep(this.height, 0, 1));
     }
-    camera.updateMatrixWorld();
+    this.stage.reach(this.height);
+    show(camera, this.guide.over(view));
+  }
+
+  /** What the camera shows now. */
+  view() {
+    this.aim();
+    return shownBy(this.stage.camera);
   }
 
   draw() {
-    this.stage.draw(this.height);
-    this.minimap.draw(this.walker.pose, this.city, this.stage.raised, this.chosen, shown.evidence.value);
+    const { then } = this.guide;
+    this.stage.draw(this.height, this.walker.feet, { over: then.on, low: then.low });
+    this.minimap.draw(this.walker.pose, this.city, this.stage, this.chosen, shown.evidence.value);
     const progress = Math.round(this.city.tiles.loadProgress * 100);
     $('progress').setAttribute('aria-valuenow', progress);
     $('progress').firstElementChild.style.width = `${progress}%`;
@@ -170,28 +194,45 @@ export class Page {
 
   /** Says where one is, on the page and in the address bar. */
   tell() {
-    const near = nearest(this.city, this.walker.feet);
-    const text = near ? `${near.distance < 25 ? 'Before' : 'Near'} ${nameOf(near.record)}` : '';
-    if ($('place').textContent !== text) $('place').textContent = text;
+    const hit = this.flying ? null : faced(this.city, this.stage.camera.position, this.walker.yaw);
+    const shot = this.guide.then.on ? this.city.buildings.get(this.chosen) : null;
+    const text = shot ? `As ${nameOf(shot.record)} was photographed`
+      : this.flying ? 'From above' : where(hit, this.stage.streetAt(this.walker.feet));
+    if (this.quiet <= 0 && $('place').textContent !== text) $('place').textContent = text;
+    this.credit.show((this.chosen ? this.city.buildings.get(this.chosen) : hit)?.record ?? null);
     const hash = toHash({
       pose: this.walker.pose,
       building: this.chosen,
+      then: this.guide.then.key,
       evidence: shown.evidence.value > 0,
       bird: this.flying,
     });
     if (hash !== location.hash) history.replaceState(null, '', hash);
   }
 
+  /** Says something for a while where else the place is told. */
+  say(text) {
+    $('place').textContent = text;
+    this.quiet = SAID_S;
+  }
+
+  /** The building that is faced, or null. */
+  faces() {
+    const hit = faced(this.city, this.stage.camera.position, this.walker.yaw);
+    return hit ? String(hit.record.id) : null;
+  }
+
   /** The building at a point of the view, both coordinates from -1 to 1; or null. */
   pick(x, y) {
     this.aim();
-    this.ray.setFromCamera(new Vector2(x, y), this.stage.camera);
-    const hit = this.ray.intersectObjects([...this.city.walls], false)[0];
-    const found = hit && this.city.buildingAt(hit.object, hit.face);
-    if (!found) return null;
-    const code = hit.uv ? hit.object.userData.codeAt(hit.uv.x, hit.uv.y) : 6;
-    const { block, record } = found;
-    return { ...record, block: block.block, distance: hit.distance, evidence: nameOfCode(code) };
+    return picked(this.city, this.stage.camera, x, y);
+  }
+
+  /** Stands somewhere; a wider view than usual stays until one walks. */
+  stand(pose) {
+    this.walker.pose = pose;
+    this.fov = pose.fov ?? this.stage.lens.fov;
+    this.aim();
   }
 
   select(id, here = null) {
@@ -204,51 +245,31 @@ export class Page {
   mark(id) {
     this.chosen = id;
     this.stage.choose(id ? this.city.buildings.get(id).shape : null);
+    this.wake();
   }
 
-  /** Goes to stand before a building; flies above it where its model is not yet there. */
-  visit(id, show = false) {
-    const found = this.city.buildings.get(id);
-    if (found.shape) {
-      this.setBird(false);
-      this.walker.pose = poseBefore(this.city, found.shape);
-    } else if (found.block.outline_m?.length) {
-      const [x, z] = this.city.placed(found.block, found.block.outline_m[0])[0];
-      this.setBird(false);
-      this.walker.pose = { x, z: z + 8, yaw: 0, pitch: 0 };
-    }
-    if (show) this.select(id);
+  /** Whether a photograph lies over the model. */
+  showing(on) {
+    document.body.classList.toggle('then', on);
+    this.press('KeyT', on);
+    this.guide.then.fit();
+    this.wake();
   }
 
   setEvidence(on) {
     shown.evidence.value = on ? 1 : 0;
     $('legend').hidden = !on;
-    press('KeyE', on);
+    this.press('KeyE', on);
   }
 
-  setBird(on, now = matchMedia('(prefers-reduced-motion: reduce)').matches) {
+  setBird(on, now = calm()) {
     if (on && !this.flying) {
       this.bird.frame(corners(this.city, this.stage.box), this.stage.camera, bestAzimuth(this.city, this.walker.yaw));
     }
     this.flying = on;
     if (now) this.height = on ? 1 : 0;
     document.body.classList.toggle('bird', on);
-    press('KeyB', on);
-  }
-
-  key(code) {
-    const act = {
-      KeyE: () => this.setEvidence(!shown.evidence.value),
-      KeyB: () => this.setBird(!this.flying),
-      KeyG: () => this.finder.open(),
-      KeyH: () => $('help').showModal(),
-      KeyL: () => this.input.toggleLock(),
-      KeyF: () => this.click(0, 0),
-      Home: () => { this.setBird(false); this.walker.pose = this.home ?? this.walker.pose; },
-      Escape: () => this.panel.close(),
-    }[code];
-    act?.();
-    return Boolean(act);
+    this.press('KeyB', on);
   }
 
   click(x, y) {
@@ -257,34 +278,20 @@ export class Page {
     else this.panel.close();
   }
 
-  listen() {
-    this.input.onClick = (x, y) => this.click(x, y);
-    this.input.onKey = (event) => {
-      const code = event.key === '?' ? 'KeyH' : event.code;
-      if (this.key(code)) event.preventDefault();
-      document.body.classList.toggle('keys', code === 'KeyF' || document.body.classList.contains('keys'));
-    };
-    for (const button of document.querySelectorAll('[data-key]')) {
-      button.addEventListener('click', () => this.key(button.dataset.key));
-    }
-    document.addEventListener('pointerlockchange', () => {
-      document.body.classList.toggle('locked', Boolean(document.pointerLockElement));
-    });
-    addEventListener('resize', () => this.resize());
-    addEventListener('hashchange', () => {
-      const { pose, evidence, bird } = fromHash(location.hash);
-      if (pose) this.walker.pose = pose;
-      this.setEvidence(evidence);
-      this.setBird(bird);
-    });
+  /** Saves a picture of the view. */
+  shoot() {
+    const draw = () => this.draw();
+    return shoot($('view'), draw, this.city.record.title, $('credit').textContent);
+  }
+
+  press(code, on) {
+    document.querySelector(`#tools [data-key=${code}]`).setAttribute('aria-pressed', on);
   }
 
   resize() {
     this.stage.fit(innerWidth, innerHeight);
+    this.fov = this.stage.lens.fov;
+    this.guide.then.fit();
     this.city.tiles.setResolutionFromRenderer(this.stage.camera, this.stage.renderer);
   }
-}
-
-function press(code, on) {
-  document.querySelector(`#tools [data-key=${code}]`).setAttribute('aria-pressed', on);
 }

@@ -1,16 +1,18 @@
 // What is known of one building, beside its photograph. Text goes in as text, never as
 // markup: catalogues hold whatever people typed.
 
+import { link } from './credit.js';
 import { metres, nameOf, percent } from './words.js';
 
 const MISSING = 'The photograph is not part of this site. Put the photographs back where the '
   + 'manifest names them, and run “nostalgin build” again.';
 
 export class Panel {
-  constructor(element, { onClose, onVisit }) {
+  constructor(element, { onClose, onVisit, onThen }) {
     this.element = element;
     this.onClose = onClose;
     this.onVisit = onVisit;
+    this.onThen = onThen;
     this.before = null; // what had the focus
   }
 
@@ -28,13 +30,13 @@ export class Panel {
     close.setAttribute('aria-label', 'Close');
     close.addEventListener('click', () => this.close());
     const visit = make('button', { className: 'visit', textContent: 'Stand before it' });
-    visit.disabled = !shape;
+    visit.disabled = !shape && !record.footprint_m;
     visit.addEventListener('click', () => this.onVisit(record));
     this.element.replaceChildren(
       close,
       heading,
       make('p', { className: 'where', textContent: where.filter(Boolean).join(' · ') }),
-      ...photographs(record, name),
+      ...photographs(record, name, (key) => this.onThen(record, key)),
       facts(record, here),
       ...unused(record),
       visit,
@@ -58,28 +60,34 @@ function make(tag, properties = {}, children = []) {
   return element;
 }
 
-function photographs(record, name) {
+function photographs(record, name, onThen) {
   if (!record.photos?.length) {
     const why = record.assumed
       ? 'No photograph of this lot could be used. The plain volume is assumed.'
       : 'This site names no photograph of this lot.';
     return [make('p', { className: 'none', textContent: why })];
   }
-  return record.photos.map((photo) => figure(photo, name));
+  return record.photos.map((photo) => figure(photo, name, onThen));
 }
 
-function figure({ file, credit, caption, used }, name) {
+function figure({ key, file, credit, caption, date, source_url: source, used, camera }, name, onThen) {
   const image = make('img', { alt: `Photograph of ${name}`, decoding: 'async' });
-  const link = make('a', { target: '_blank', rel: 'noopener', title: 'Open the photograph' }, [image]);
-  const holder = make('figure', {}, [link]);
-  const absent = () => link.replaceWith(make('p', { className: 'none', textContent: MISSING }));
+  const whole = make('a', { target: '_blank', rel: 'noopener', title: 'Open the photograph' }, [image]);
+  const holder = make('figure', {}, [whole]);
+  const absent = () => whole.replaceWith(make('p', { className: 'none', textContent: MISSING }));
   if (local(file)) {
     image.addEventListener('error', absent);
-    image.src = link.href = file;
+    image.src = whole.href = file;
+    if (camera) {
+      const button = make('button', { className: 'visit', textContent: 'Stand where the photographer stood' });
+      button.addEventListener('click', () => onThen(key));
+      holder.append(button);
+    }
   } else absent();
-  const words = [caption, used === false ? 'Not the one on the model.' : null].filter(Boolean);
+  const words = [[caption, date].filter(Boolean).join(', '), used === false ? 'Not the one on the model.' : null].filter(Boolean);
   const lines = words.map((text) => make('span', { textContent: text }));
   if (credit) lines.push(make('cite', { textContent: credit }));
+  if (source) lines.push(link('The archive’s record', source));
   if (lines.length) holder.append(make('figcaption', {}, lines));
   return holder;
 }
@@ -94,7 +102,7 @@ function facts(record, here) {
     ['Seen by a camera', share(record)],
     ['Where you clicked', here],
     ['Street', record.street],
-    ['Year', record.year],
+    ['Built', record.year],
     ['Width', metres(record.width_m, record.width_sd_m)],
     ['Height', height(record)],
     ['By its storeys', record.height_by_storeys_m && metres(record.height_by_storeys_m)],

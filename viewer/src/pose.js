@@ -7,10 +7,11 @@ const FIELDS = ['x', 'y', 'z', 'yaw', 'pitch'];
 const LIMIT = 1e6;
 
 /** `#at=12.3,1.5,-4.0,90.0,0.0&building=993-11`: what `fromHash` reads back. */
-export function toHash({ pose, building = null, evidence = false, bird = false }) {
+export function toHash({ pose, building = null, then = null, evidence = false, bird = false }) {
   const at = FIELDS.map((name) => pose[name].toFixed(name === 'y' ? 2 : 1)).join(',');
   const parts = [`at=${at}`];
   if (building) parts.push(`building=${encodeURIComponent(building)}`);
+  if (then) parts.push(`then=${encodeURIComponent(then)}`);
   if (evidence) parts.push('evidence');
   if (bird) parts.push('bird');
   return `#${parts.join('&')}`;
@@ -22,6 +23,7 @@ export function fromHash(hash) {
   return {
     pose: poseFrom(query.get('at')),
     building: query.get('building'),
+    then: query.get('then'), // the key of a photograph
     evidence: query.has('evidence'),
     bird: query.has('bird'),
   };

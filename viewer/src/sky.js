@@ -10,11 +10,12 @@ export function sky() {
   const material = new ShaderMaterial({
     side: BackSide,
     depthWrite: false,
+    depthTest: false,
     uniforms: { horizon: { value: HORIZON }, zenith: { value: ZENITH } },
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
   });
-  const dome = new Mesh(new SphereGeometry(1500, 32, 16), material);
+  const dome = new Mesh(new SphereGeometry(100, 32, 16), material);
   dome.renderOrder = -1;
   dome.frustumCulled = false;
   return dome;

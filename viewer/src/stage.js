@@ -1,18 +1,22 @@
 // The stage: renderer, camera, sky, street, and what each block adds to the ground.
 
 import {
-  Box3, BufferGeometry, Float32BufferAttribute, FogExp2, LineBasicMaterial, LineSegments, Mesh,
+  Box3, BufferGeometry, Float32BufferAttribute, FogExp2, Group, LineBasicMaterial, LineSegments, Mesh,
   PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { acceleratedRaycast } from 'three-mesh-bvh';
 
-import { outlineOf, pavement, shade, street } from './ground.js';
-import { fade, label, repeated } from './labels.js';
+import { outlineOf, paved, pavement, shade, street } from './ground.js';
+import { fade, label, nearestName, repeated } from './labels.js';
+import { Props } from './props.js';
 import { HORIZON, sky } from './sky.js';
 
 Mesh.prototype.raycast = acceleratedRaycast;
 
 const HAZE = 0.0042; // per metre, on the street
+const FAR_M = [800, 9000]; // on the street, where haze hides what is farther, and in the air
+const NEAR_M = [0.12, 4];
+const CELL_M = 400; // pavement of so large a square is one draw call
 const INK = 0x26241f;
 const SLOW_S = 0.045;
 const PATIENCE = 6; // slow frames
@@ -22,19 +26,27 @@ export class Stage {
   constructor(canvas) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.camera = new PerspectiveCamera(62, 1, 0.12, 4000);
+    this.camera = new PerspectiveCamera(62, 1, 0.12, FAR_M[0]);
     this.scene = new Scene();
     this.scene.fog = new FogExp2(HORIZON, HAZE);
     this.dome = sky();
-    this.scene.add(this.dome, street());
+    this.props = new Props();
+    this.street = street();
+    this.ground = new Group().add(this.street); // street, pavement, and what lies at walls' feet
+    this.scene.add(this.dome, this.ground, this.props.group);
     this.box = new Box3();
     this.raised = [];
     this.paved = new Set(); // names of blocks
-    this.settled = new Set();
+    this.settled = new Map(); // name of a block -> what lies at its feet
     this.names = []; // of streets
     this.chosen = null;
     this.lag = 0;
     this.sharpness = 1;
+  }
+
+  /** What the eyes of a walker hold. */
+  get lens() {
+    return { fov: this.camera.fov, aspect: this.camera.aspect };
   }
 
   fit(width, height) {
@@ -57,39 +69,82 @@ export class Stage {
     this.renderer.setPixelRatio(wanted * Math.min(devicePixelRatio, 2));
   }
 
-  /** `height` is 0 on the street and 1 in the air, where haze thins and names appear. */
-  draw(height = 0) {
-    this.scene.fog.density = HAZE * (1 - 0.85 * height);
-    fade(this.names, height);
-    this.dome.position.copy(this.camera.position);
-    this.renderer.render(this.scene, this.camera);
+  /** Sees from as near to as far as one stands: names lie so flat on a street that depth has to be fine. */
+  reach(height) {
+    this.camera.near = NEAR_M[0] + (NEAR_M[1] - NEAR_M[0]) * height;
+    this.camera.far = FAR_M[0] + (FAR_M[1] - FAR_M[0]) * height;
   }
 
-  /** Lays sidewalks round outlines of [x, z], once per block. */
-  pave(name, outlines) {
-    if (this.paved.has(name) || !outlines.length) return;
+  /**
+   * `height` is 0 on the street and 1 in the air, where haze thins and names appear. What is
+   * drawn for scale stands about `feet`, and not where a photograph lies `over` the view; the
+   * ground is not drawn for a camera as `low` as itself.
+   */
+  draw(height, feet, { over = false, low = false } = {}) {
+    const { camera } = this;
+    this.scene.fog.density = over ? 0 : HAZE * (1 - 0.9 * height);
+    fade(this.names, height, camera.position.y);
+    this.props.group.visible = !over;
+    this.ground.visible = !low;
+    this.props.gather(feet, this.raised);
+    this.street.position.set(camera.position.x, 0, camera.position.z);
+    this.dome.position.copy(camera.position);
+    this.renderer.render(this.scene, camera);
+  }
+
+  /** Lays the sidewalks of many blocks: pairs of a name and outlines of [x, z]. */
+  paveAll(blocks) {
+    const cells = new Map();
+    for (const [name, outlines] of blocks) {
+      const [[x, z]] = outlines[0];
+      const cell = `${Math.floor(x / CELL_M)},${Math.floor(z / CELL_M)}`;
+      cells.set(cell, [...(cells.get(cell) ?? []), ...this.#pavement(name, outlines)]);
+    }
+    for (const parts of cells.values()) if (parts.length) this.ground.add(paved(parts));
+  }
+
+  /** What paves a block, once per block. */
+  #pavement(name, outlines) {
+    if (this.paved.has(name) || !outlines.length) return [];
     this.paved.add(name);
-    const { group, walks } = pavement(outlines);
-    this.scene.add(group);
+    const { parts, walks } = pavement(outlines);
     this.raised.push(...walks);
     for (const [x, z] of outlines.flat()) this.box.expandByPoint(new Vector3(x, 0, z));
+    return parts;
   }
 
   /** Adds what is known of a block only once its model is there. */
   settle(block, shapes) {
-    this.pave(block.name, [outlineOf(shapes)]);
-    if (this.settled.has(block.name)) return; // it was here before, and went
-    this.settled.add(block.name);
-    this.scene.add(shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35));
+    this.paveAll([[block.name, [outlineOf(shapes)]]]);
+    this.unsettle(block); // a finer model may have come
+    const feet = [shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35)];
+    this.settled.set(block.name, feet);
+    this.ground.add(...feet);
     for (const { top } of shapes) this.box.max.y = Math.max(this.box.max.y, top);
+  }
+
+  /** Takes away what came with a block's model. */
+  unsettle(block) {
+    for (const one of this.settled.get(block.name) ?? []) {
+      this.ground.remove(one);
+      one.geometry.dispose();
+      one.material.dispose();
+    }
+    this.settled.delete(block.name);
   }
 
   /** Writes a street's name beside the walls that stand on it. */
   inscribe(name, row) {
-    const plane = label(name, row);
-    if (repeated(plane, this.names)) return;
+    if (!row) return;
+    const plane = label(name, row, (place) => repeated(name, place, this.names));
+    if (!plane) return;
     this.names.push(plane);
     this.scene.add(plane);
+  }
+
+  /** The street on which the feet stand, or an empty word. */
+  streetAt({ x, z }) {
+    return nearestName(this.names, [x, z]);
   }
 
   /** Draws a line round one building, or none. */

@@ -7,8 +7,9 @@ import { contains } from './outline.js';
 import { frontOf } from './survey.js';
 import { along, before, rows } from './walker.js';
 
-const FARTHEST_M = 28; // to step back from a front
+const FARTHEST_M = 70; // to step back from a front
 const NEAREST_M = 2.5;
+const BACK_M = 1; // to what stands behind one
 const MOST_WALLS = 300; // are looked at to choose a view
 
 const ray = new Raycaster();
@@ -20,34 +21,18 @@ export function homeIn(city, block, otherwise) {
   const walls = known.flatMap(({ shape }) => shape?.walls ?? []).filter((wall) => clear(city, wall));
   const [best] = rows(walls.filter(({ kind }) => kind === 'own'));
   const row = best ?? rows(walls)[0];
-  return row ? along(row, room(city, row[0])) : otherwise;
+  return row ? along(row, 0.7 * room(city, row[0])) : otherwise;
 }
 
-/** Where to stand to see a building. */
-export function poseBefore(city, shape) {
-  const wall = frontFor(city, shape);
-  return before(wall, room(city, wall));
+/** Where to stand to see a building: by its model, or else by its footprint; null if neither is known. */
+export function poseBefore(city, found, lens) {
+  const wall = found.shape ? frontFor(city, found.shape) : city.wallOf(found);
+  return wall && before(wall, room(city, wall), lens);
 }
 
 /** The wall that a building shows to the street. */
 export function frontFor(city, shape) {
   return frontOf(shape, (wall) => clear(city, wall));
-}
-
-/** The wall of which the feet stand in front, and how far off. */
-export function nearest(city, { x, z }) {
-  let best = null;
-  for (const { record, shape } of city.buildings.values()) {
-    for (const { a, b, out } of shape?.walls ?? []) {
-      if ((x - a[0]) * out[0] + (z - a[1]) * out[1] < -0.5) continue;
-      const way = [b[0] - a[0], b[1] - a[1]];
-      const t = ((x - a[0]) * way[0] + (z - a[1]) * way[1]) / (way[0] ** 2 + way[1] ** 2);
-      const s = MathUtils.clamp(t, 0, 1);
-      const distance = Math.hypot(a[0] + s * way[0] - x, a[1] + s * way[1] - z);
-      if (!best || distance < best.distance) best = { record, distance };
-    }
-  }
-  return best;
 }
 
 /** The side from which most of the photographs can be seen; of equals, the one ahead. */
@@ -78,16 +63,13 @@ function room(city, wall) {
   const out = new Vector3(wall.out[0], 0, wall.out[1]);
   ray.set(off(wall, 1.5), out);
   const [hit] = ray.intersectObjects([...city.walls], false);
-  return hit ? MathUtils.clamp(hit.distance * 0.7, NEAREST_M, FARTHEST_M) : FARTHEST_M;
+  return hit ? MathUtils.clamp(hit.distance - BACK_M, NEAREST_M, FARTHEST_M) : FARTHEST_M;
 }
 
 /** Whether the ground before a wall is free. */
 function clear(city, { a, b, out }) {
   const at = [(a[0] + b[0]) / 2 + 2 * out[0], (a[1] + b[1]) / 2 + 2 * out[1]];
-  for (const { shape } of city.buildings.values()) {
-    if (shape?.roofs.some((roof) => contains(roof, at))) return false;
-  }
-  return true;
+  return !city.near(at, 0).some(({ shape }) => shape?.roofs.some((roof) => contains(roof, at)));
 }
 
 /** How much of a wall is seen from far and above; 0 where something hides it. */

@@ -4,6 +4,7 @@ import { MathUtils, Vector3 } from 'three';
 
 import { EYE_M, eased, walk } from './body.js';
 import { KERB_M } from './ground.js';
+import { holding } from './lens.js';
 import { contains } from './outline.js';
 
 const WALK_M_S = 2.6; // brisk: a block is long
@@ -11,7 +12,9 @@ const RUN_M_S = 8;
 const TURN_RAD_S = 1.7;
 const LOOK_RAD_PX = 0.0032;
 const STEEPEST = MathUtils.degToRad(85);
-const HIGHEST_DEG = 20; // so that the street stays in view
+const NEAREST_M = 8; // to a front, where there is room
+const WIDEST_DEG = 100; // of a view, where there is none
+const AROUND = 1.12; // of a front, so that its edges are seen
 const SAME_LINE_M = 3;
 const WIDE_M = 12;
 const REACH_M = 220; // no walking further than this from the nearest block
@@ -76,18 +79,24 @@ export class Walker {
   }
 }
 
-/** Where to stand to see a wall: on its street, facing it, within `room` metres. */
-export function before(wall, room) {
+/**
+ * Where to stand to see a whole wall: on its street, facing it, within `room` metres. Where
+ * that is too near for the `lens` of the eyes, the view is made wider: its `fov` says how wide.
+ */
+export function before(wall, room, lens = { fov: 62, aspect: 4 / 3 }) {
   const { a, b, out, top } = wall;
-  const width = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const distance = Math.min(room, Math.max(8, 0.85 * width, 0.8 * top));
-  const rise = Math.atan2(Math.max(0, 0.42 * top - EYE_M), distance);
+  const front = { width: AROUND * Math.hypot(b[0] - a[0], b[1] - a[1]), top: AROUND * top };
+  let distance = Math.min(room, NEAREST_M);
+  const seen = () => holding(front, distance, EYE_M, lens.aspect);
+  while (distance < room && seen().fov > lens.fov) distance = Math.min(room, distance + 0.5);
+  const { fov, tilt } = seen();
   return {
     x: (a[0] + b[0]) / 2 + out[0] * distance,
     y: EYE_M,
     z: (a[1] + b[1]) / 2 + out[1] * distance,
     yaw: MathUtils.radToDeg(Math.atan2(out[0], out[1])),
-    pitch: Math.min(HIGHEST_DEG, MathUtils.radToDeg(rise)),
+    pitch: tilt,
+    fov: MathUtils.clamp(fov, lens.fov, WIDEST_DEG),
   };
 }
 

@@ -17,6 +17,7 @@ test('a pose survives the address bar', () => {
   const view = {
     pose: { x: -12.3, y: 1.62, z: 40.1, yaw: -90, pitch: 4.5 },
     building: '993-11 <b>&',
+    then: '0123456789abcdef',
     evidence: true,
     bird: false,
   };

@@ -1,5 +1,6 @@
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,13 @@ from nostalgin_core.records import (
     Front,
     Height,
     Seen,
+    Standpoint,
     Wall,
 )
-from pipelines.site import site
+from pipelines.index.row import Row
+from pipelines.site import camera, site
 from pipelines.site.folder import RECORD, Folder, Foreign
+from pipelines.site.publish import said, words_of, years
 from pipelines.site.record import record as recorded
 
 WEBP = site.thumbnail(np.zeros((40, 30), np.uint8))
@@ -196,6 +200,61 @@ def corner() -> Block:
     height = Height(20.0, 17.0, 24.5, 18.0, None, supported=True)
     built = Building("993-11", square, 20.0, walls, assumed=False, height=height)
     return Block("993", (built,), (square,))
+
+
+STOOD = Standpoint(  # before the middle of a front 10 m wide, 20 m off, eyes at 1.5 m
+    size_px=(600, 800),
+    photo_from_camera=np.array([[700.0, 0, 299.5], [0, 700.0, 399.5], [0, 0, 1]]),
+    focal_sd=0.1,
+    position=(0.5, 0.15, 2.0),
+    position_sd=0.2,
+    front_from_camera=np.array([[1.0, 0, 0], [0, -1, 0], [0, 0, -1]]),
+    quad_px=np.array([[124.5, 20], [474.5, 20], [474.5, 452], [124.5, 452]]),
+    roof=2.1,
+)
+
+
+def test_a_photo_that_shows_a_front_is_placed_before_it() -> None:
+    one = told(stood={("ab", 0): STOOD})["photos"][0]["camera"]
+    assert one["front"] == "993-11-0"
+    assert one["position_m"] == [5.0, -20.0, 1.5]  # its street lies to the south
+    assert (one["position_sd_m"], one["roof_m"]) == (2.0, 21.0)
+    assert one["block_from_camera"] == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
+    assert (one["focal_px"], one["focal_sd_px"]) == (700.0, 70.0)
+    assert "camera" not in told()["photos"][0]
+
+
+def test_the_front_of_the_model_seen_by_the_camera_is_the_quad() -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        start, end = rng.uniform(-50, 50, (2, 2))
+        wall = Wall((start[0], start[1]), (end[0], end[1]), "f", ("ab", 0), None)
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        one = camera.camera(replace(STOOD, front_from_camera=turn), wall)
+        width = float(np.hypot(*(end - start)))
+        for x, y in ((0, 0), (1, 0), (1, STOOD.roof), (0, STOOD.roof)):
+            here = [*(start + x * (end - start)), y * width]
+            seen = np.subtract(here, one["position_m"]) @ one["block_from_camera"]
+            true = (np.array([x, y, 0.0]) - STOOD.position) @ turn
+            np.testing.assert_allclose(seen / width, true, atol=0.01 / width + 2e-5)
+
+
+def test_a_footprint_starts_at_the_front() -> None:
+    assert told()["footprint_m"] == [[0, 0], [10, 0], [10, 30], [0, 30]]
+
+
+def test_a_row_says_date_and_record_of_its_photo_and_when_the_house_was_built() -> None:
+    words = {"date": "1940", "source_url": "https://archive.example/7", "year": "1911"}
+    row = Row(2, "root", "a.jpg", front(0, rank=0, width_m=9.0), "Archive", words)
+    photo = {"credit": "Archive", "date": "1940", "source_url": words["source_url"]}
+    assert words_of([(row, "ab"), (row, None)]) == {"ab": photo}
+    assert years([row]) == {"993-11": {"year": "1911"}}
+
+
+def test_only_a_web_page_is_handed_on_as_a_record() -> None:
+    for address in ("javascript:alert(1)", "data:text/html,x", "/etc/passwd", ""):
+        row = Row(2, "root", "a.jpg", None, "Archive", {"source_url": address})
+        assert said(row) == {"credit": "Archive"}
 
 
 def told(**more: Any) -> dict[str, Any]:
