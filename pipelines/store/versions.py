@@ -36,7 +36,7 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 6,
     "matte": 7,
-    "rectify": 5,
+    "rectify": 6,
     "inpaint": 5,
     "block": 3,
     "thumbnail": 1,
