@@ -37,7 +37,7 @@ CODE: Final = {
     "segment": 6,
     "matte": 7,
     "rectify": 6,
-    "inpaint": 5,
+    "inpaint": 6,
     "block": 3,
     "thumbnail": 1,
 }
