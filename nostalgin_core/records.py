@@ -153,6 +153,7 @@ class Front:
     width_m: float
     depth_m: float | None
     width_assumed: bool  # not in any catalogue
+    storeys: float | None = None  # of its building, as a catalogue counts them
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +207,8 @@ class Height:
     by_storeys_m: float | None  # as its best elevation's rows of windows have it
     by_width_m: float | None  # as its width and that elevation's proportions have it
     supported: bool  # believed to lie within a quarter of the truth
+    by_list_m: float | None = None  # as the storeys that a catalogue gives have it
+    contradicting: tuple[str, ...] = ()  # witnesses outside the interval
 
 
 @dataclass(frozen=True, slots=True, eq=False)

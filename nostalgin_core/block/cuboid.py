@@ -5,13 +5,14 @@ marked as assumed.
 """
 
 from collections.abc import Collection, Mapping, Sequence
+from statistics import median
 
 import numpy as np
 
 from nostalgin_core import evidence
 from nostalgin_core.block.chain import Footprint
 from nostalgin_core.block.heights import HIGHEST_M, LOWEST_M, Shown, Told
-from nostalgin_core.records import Building, Height, Wall
+from nostalgin_core.records import Building, Front, Height, Wall
 
 ASSUMED_M = 14.0  # four storeys, where a whole block has no photograph
 
@@ -33,6 +34,17 @@ def told(
         for one in shown.get(front_id or "", ())
         if LOWEST_M <= width_m / one.aspect <= HIGHEST_M
     ]
+
+
+def counts(fronts: Sequence[Front]) -> dict[str, float]:
+    """List the storeys that a catalogue gives, by front."""
+    return {one.front_id: one.storeys for one in fronts if one.storeys is not None}
+
+
+def listed(footprint: Footprint, storeys: Mapping[str, float]) -> float | None:
+    """Tell the storeys that a catalogue gives a building's fronts, if it does."""
+    given = [storeys[name] for name in footprint.front_ids if name and name in storeys]
+    return float(median(given)) if given else None
 
 
 def edge_lengths(footprint: Footprint) -> list[float]:

@@ -12,7 +12,13 @@ from pathlib import PurePosixPath
 from typing import Final
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.catalogue.lengths import count, later_building, length, number
+from nostalgin_core.catalogue.lengths import (
+    count,
+    floors,
+    later_building,
+    length,
+    number,
+)
 
 TAX_PHOTO: Final = re.compile(r"(?:^|_)(\d{5})_(\d{4})([a-z]?)$")
 
@@ -33,6 +39,7 @@ class Entry:
     side: int | None
     order: float | None
     credit: str
+    storeys: float | None = None  # of the building, as the list counts them
 
 
 def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
@@ -50,9 +57,10 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
     width_m, doubts = length(cells, "width_m", "frontage_ft")
     depth_m, more = length(cells, "depth_m", "depth_ft")
     later = later_building(cells)
+    storeys, odd = floors(cells)
     if later:
-        width_m = depth_m = None
-        doubts, more = [later], []
+        width_m = depth_m = storeys = None
+        doubts, more, odd = [later], [], []
     order = number(cells, "order")
     ring, side = count(cells, "ring"), count(cells, "side")
     made = Entry(
@@ -68,8 +76,9 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         side=side,
         order=order,
         credit=cells.get("credit", ""),
+        storeys=storeys,
     )
-    return made, doubts + more
+    return made, doubts + more + odd
 
 
 def round_the_corner(entry: Entry, cells: Mapping[str, str]) -> list[Entry]:

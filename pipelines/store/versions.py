@@ -38,7 +38,7 @@ CODE: Final = {
     "matte": 7,
     "rectify": 6,
     "inpaint": 6,
-    "block": 3,
+    "block": 4,
     "thumbnail": 1,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
