@@ -171,6 +171,13 @@ class Seen:
     area_px: float  # visible pixels
     photographed: float  # share of the elevation that a camera saw
     storeys: tuple[float, ...] = ()  # a score for each of `storeys.COUNTS`
+    stretched: float = 0.0  # share of what a camera saw that is smeared
+    detail: float = 5.0  # contrast of the finest that it shows, gray levels
+
+    @property
+    def clear(self) -> float:
+        """The share of the elevation that a camera saw, and not smeared."""
+        return self.photographed * (1 - self.stretched)
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,6 +48,7 @@ class Shown:
     aspect_sd: float
     score: float
     storeys: tuple[float, ...] = ()  # a score for each of `COUNTS`, if they were told
+    clear: float = 1.0  # the share that a camera saw, and not smeared
 
 
 class Told(NamedTuple):
