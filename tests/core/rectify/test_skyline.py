@@ -54,7 +54,7 @@ def test_sky_lies_over_the_front_alone(seed: int) -> None:
 
 
 def test_columns_without_a_front_end_as_high_as_those_beside_them() -> None:
-    mask = front(np.s_[:10], np.s_[:, :20])
+    mask = front(np.s_[:10, :], np.s_[:, :20])
     sky = over_roof(mask)
     assert sky[:10].all()
     assert not sky[10:].any()
