@@ -15,6 +15,7 @@ from nostalgin_core.records import Elevation
 
 MOST_STRETCHED: Final = 3.0  # times as far one way as the other
 GRID: Final = 64  # texels that are looked at, either way
+MOST_MAGNIFIED: Final = 4.0  # of a sliver's few pixels, or blurs would never end
 COARSER: Final = 2.0  # detail is what a blur twice as wide takes away
 
 
@@ -51,7 +52,8 @@ def detail(view: Elevation, photo_px: float) -> float:
     seen = view.evidence == evidence.PHOTOGRAPHED
     if not seen.any() or photo_px <= 0:
         return 0.0
-    scale = max(1.0, float(np.sqrt(np.count_nonzero(by_camera(view)) / photo_px)))
+    magnified = float(np.sqrt(np.count_nonzero(by_camera(view)) / photo_px))
+    scale = min(max(1.0, magnified), MOST_MAGNIFIED)
     weight = seen.astype(np.float32)
     light = view.image * weight
 

@@ -78,3 +78,8 @@ def test_what_nobody_saw_has_no_detail() -> None:
     blind.evidence[:] = evidence.INPAINTED
     assert detail(blind, 0.0) == 0.0
     assert stretched(blind) == 0.0
+
+
+def test_a_sliver_of_a_few_pixels_is_looked_at_no_coarser_than_a_small_front() -> None:
+    sliver = seen(EDGES)
+    assert detail(sliver, 0.5) == detail(sliver, H * W / 16.0)
