@@ -11,7 +11,7 @@ PHOTOGRAPHED: Final = 1
 SOFT_EDGE: Final = 2  # photographed, mixed with what is before or behind, or its fill
 INPAINTED: Final = 3  # hidden in the photo, filled by the inpainter
 BEYOND_FRAME: Final = 4  # outside the photo's exposed frame, filled
-COPIED: Final = 5  # copied from another side of the building
+COPIED: Final = 5  # copied from elsewhere on the building
 ASSUMED: Final = 6  # no photograph: a plain volume
 
 SEEN: Final = 0.95  # alpha above which a texel is the front's alone, no soft edge
@@ -22,7 +22,7 @@ NAMES: Final = {
     SOFT_EDGE: "photographed at a soft edge",
     INPAINTED: "inpainted",
     BEYOND_FRAME: "filled beyond the photo's frame",
-    COPIED: "copied from another side",
+    COPIED: "copied from elsewhere on the building",
     ASSUMED: "assumed",
 }
 

@@ -171,6 +171,7 @@ class Front:
     width_m: float
     depth_m: float | None
     width_assumed: bool  # not in any catalogue
+    storeys: float | None = None  # of its building, as a catalogue counts them
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +189,13 @@ class Seen:
     area_px: float  # visible pixels
     photographed: float  # share of the elevation that a camera saw
     storeys: tuple[float, ...] = ()  # a score for each of `storeys.COUNTS`
+    stretched: float = 0.0  # share of what a camera saw that is smeared
+    detail: float = 5.0  # contrast of the finest that it shows, gray levels
+
+    @property
+    def clear(self) -> float:
+        """The share of the elevation that a camera saw, and not smeared."""
+        return self.photographed * (1 - self.stretched)
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,6 +232,8 @@ class Height:
     by_storeys_m: float | None  # as its best elevation's rows of windows have it
     by_width_m: float | None  # as its width and that elevation's proportions have it
     supported: bool  # believed to lie within a quarter of the truth
+    by_list_m: float | None = None  # as the storeys that a catalogue gives have it
+    contradicting: tuple[str, ...] = ()  # witnesses outside the interval
 
 
 @dataclass(frozen=True, slots=True, eq=False)

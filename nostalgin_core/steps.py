@@ -132,5 +132,7 @@ def seen(key: str, facade: Facade, view: Elevation) -> Seen:
         left_px=float(view.quad[:, 0].mean()),
         area_px=float(facade.alpha.sum(dtype=np.float64)),
         photographed=photographed / max(somewhere, 1),
+        stretched=rectify.stretched(view),
+        detail=rectify.detail(view, float(facade.alpha.sum(dtype=np.float64))),
         storeys=tuple(storeys.scores(view.image, np.isin(view.evidence, by_camera))),
     )

@@ -20,6 +20,7 @@ SECOND = 0.6  # of the best target score, which a corner's second facade must re
 BEFORE_BOTH = 0.5  # target score of a second front whose length no list gives
 MISMATCH = 2.5  # of two facades' widths to the lot's: quads at corners are rough
 HALF_AREA_PX = 20_000.0  # a facade of this many pixels gets half the credit for size
+HALF_DETAIL = 2.0  # gray levels: so does one in haze or out of focus
 HALF_SPREAD = 0.15  # so does one whose aspect is known to 15 %
 
 
@@ -77,17 +78,19 @@ def _two_streets(front: Front, sure: Sequence[Seen]) -> bool:
 def score(one: Seen) -> float:
     """Weigh a facade, from 0 to 1, comparable between photos of one front.
 
-    It is the product of five shares: how sure the network is of the facade, how sure
-    that it is the target, how much of it a camera saw, how large it is, and how well
-    its proportions are known.
+    It is the product of six shares: how sure the network is of the facade, how sure
+    that it is the target, how much of it a camera saw unsmeared, how large it is, how
+    sharp, and how well its proportions are known.
     """
     size = one.area_px / (one.area_px + HALF_AREA_PX)
     spread = one.aspect_sd / one.aspect
     return float(
         one.score
         * one.target_score
-        * (0.25 + 0.75 * one.photographed)
+        * (0.25 + 0.75 * one.clear)
         * size
+        * one.detail
+        / (one.detail + HALF_DETAIL)
         / (1.0 + spread / HALF_SPREAD)
     )
 

@@ -17,7 +17,7 @@ from nostalgin_core.address import house_numbers, street_width
 from nostalgin_core.arrays import Points
 from nostalgin_core.block import heights
 from nostalgin_core.block.chain import Footprint, Ring, chain
-from nostalgin_core.block.cuboid import ASSUMED_M, cuboid, told
+from nostalgin_core.block.cuboid import ASSUMED_M, counts, cuboid, listed, told
 from nostalgin_core.block.heights import Shown
 from nostalgin_core.block.outline import nominal_headings
 from nostalgin_core.records import Assignment, Block, Building, Front, Texture
@@ -57,13 +57,15 @@ def block(
     shown = elevations(assignments, aspects)
     guessed = {front.front_id for front in fronts if front.width_assumed}
     fronts = with_seen_widths(fronts, shown)
-    numbers = sorted({front.ring for front in fronts})
-    rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
+    rings = [
+        [front for front in fronts if front.ring == ring]
+        for ring in sorted({front.ring for front in fronts})
+    ]
     placed = laid_out(list(zip(chained(rings), rings, strict=True)))
     footprints = _distinct([one for ring in placed for one in ring.footprints])
     return Block(
         block=name,
-        buildings=tuple(raised(footprints, shown, guessed, copied=copied)),
+        buildings=tuple(raised(footprints, shown, guessed, fronts, copied=copied)),
         outline_m=tuple(ring.outline_m for ring in placed),
         closure_m=tuple(ring.closure_m for ring in placed),
     )
@@ -135,11 +137,13 @@ def raised(
     footprints: Sequence[Footprint],
     shown: Mapping[str, Sequence[Shown]],
     guessed: Collection[str] = (),
+    fronts: Sequence[Front] = (),
     *,
     copied: bool = False,
 ) -> list[Building]:
     """Raise all buildings; those without a height get their neighbours' median."""
-    known = [heights.height(told(one, shown, guessed)) for one in footprints]
+    of = counts(fronts)
+    known = [heights.height(told(o, shown, guessed), listed(o, of)) for o in footprints]
     seen = [(i, one.height_m) for i, one in enumerate(known) if one is not None]
 
     def neighbourly(index: int) -> float:

@@ -5,14 +5,16 @@ marked as assumed.
 """
 
 from collections.abc import Collection, Mapping, Sequence
+from statistics import median
 
 import numpy as np
 
 from nostalgin_core import evidence
 from nostalgin_core.block.chain import Footprint
 from nostalgin_core.block.heights import HIGHEST_M, LOWEST_M, Shown, Told
-from nostalgin_core.records import Building, Height, Wall
+from nostalgin_core.records import Building, Front, Height, Wall
 
+LEAST_CLEAR = 0.35  # of an elevation, or a plain wall is more honest
 ASSUMED_M = 14.0  # four storeys, where a whole block has no photograph
 
 
@@ -35,6 +37,22 @@ def told(
     ]
 
 
+def counts(fronts: Sequence[Front]) -> dict[str, float]:
+    """List the storeys that a catalogue gives, by front."""
+    return {one.front_id: one.storeys for one in fronts if one.storeys is not None}
+
+
+def listed(footprint: Footprint, storeys: Mapping[str, float]) -> float | None:
+    """Tell the storeys that a catalogue gives a building's fronts, if it does."""
+    given = [storeys[name] for name in footprint.front_ids if name and name in storeys]
+    return float(median(given)) if given else None
+
+
+def legible(shown: Sequence[Shown]) -> list[Shown]:
+    """Leave out elevations that are mostly invented or smeared."""
+    return [one for one in shown if one.clear >= LEAST_CLEAR]
+
+
 def edge_lengths(footprint: Footprint) -> list[float]:
     """Measure the four edges, in metres."""
     ahead = np.roll(footprint.corners_m, -1, axis=0) - footprint.corners_m
@@ -51,15 +69,16 @@ def cuboid(
 ) -> Building:
     """Raise a building and hang its elevations.
 
-    A front wears its best elevation. Where a wall stands on a street and no photograph
-    shows it, it wears a copy of the building's best (COPIED); so do the other walls if
+    A front wears its best elevation, unless next to nothing of that is clear: mostly
+    invented or smeared. Where a wall stands on a street and no photograph shows it
+    well, it wears a copy of the building's best (COPIED); so do the other walls if
     `copied` (the paper tiles what it has round all four sides), else they are plain
     (ASSUMED), as party walls mostly are.
     """
     best = {
-        front_id: max(shown[front_id], key=lambda one: (one.score, one.texture))
+        front_id: max(clear, key=lambda one: (one.score, one.texture))
         for front_id in footprint.front_ids
-        if front_id and shown.get(front_id)
+        if front_id and (clear := legible(shown.get(front_id, ())))
     }
     spare = max(best.values(), key=lambda one: (one.score, one.texture), default=None)
     walls = []

@@ -26,8 +26,11 @@ USUAL: Final = ((0.6, 4.5, 0.35), (0.4, 9.0, 0.8))  # share, storeys, log spread
 WIDTH_SD, ASSUMED_WIDTH_SD = 0.1, 0.5  # of the logarithm
 PROPORTIONS_WRONG: Final = 0.3
 STOREYS_SHARPNESS: Final = 28.0  # of what a comb's score says
-STOREYS_SD: Final = 0.1  # of what a storey is high, as a logarithm
-STOREYS_WRONG: Final = 0.2
+STOREYS_SD: Final = 0.14  # of what a storey is high, as a logarithm
+STOREYS_WRONG: Final = 0.3
+LISTED_SD: Final = 0.12  # storeys differ in height from house to house
+LISTED_WRONG: Final = 0.05
+STOREYS, WIDTH, LIST = "storeys", "width", "list"  # the witnesses
 INTERVAL: Final = (0.05, 0.5, 0.95)
 NEAR: Final = 0.25  # of a height
 LEAST_BELIEF: Final = 0.5  # that the height lies so near, or it is assumed
@@ -45,6 +48,7 @@ class Shown:
     aspect_sd: float
     score: float
     storeys: tuple[float, ...] = ()  # a score for each of `COUNTS`, if they were told
+    clear: float = 1.0  # the share that a camera saw, and not smeared
 
 
 class Told(NamedTuple):
@@ -55,34 +59,52 @@ class Told(NamedTuple):
     shown: Shown
 
 
-def belief(told: Sequence[Told]) -> Belief:
+def belief(told: Sequence[Told], listed: float | None = None) -> Belief:
     """Weigh a building's elevations, on top of what is usual.
 
     Elevations of one building err together: each speaks with the weight of 1 / sqrt n.
+    `listed` are the storeys that a catalogue gives, another witness.
     """
     logs = np.log(usual())
+    if listed is not None:
+        logs += np.log(by_list(listed))
     for width_m, assumed, one in told:
         said = np.log(proportions(width_m, one, assumed=assumed)) + np.log(storeys(one))
         logs += said / len(told) ** 0.5
     return density(logs)
 
 
-def height(told: Sequence[Told]) -> Height | None:
+def height(told: Sequence[Told], listed: float | None = None) -> Height | None:
     """Tell a building's height, its interval and witnesses; None if nothing does."""
-    if not told:
+    if not told and listed is None:
         return None
-    of = belief(told)
+    of = belief(told, listed)
     low_m, middle_m, high_m = quantiles(of, INTERVAL)
-    best = max(told, key=lambda one: (one.shown.score, one.shown.texture))
     near = np.abs(HEIGHTS_M / middle_m - 1) <= NEAR
+    said = witnesses(told, listed)
     return Height(
         height_m=middle_m,
         low_m=low_m,
         high_m=high_m,
-        by_storeys_m=counted(best.shown),
-        by_width_m=None if best.assumed else best.width_m / best.shown.aspect,
+        by_storeys_m=said.get(STOREYS),
+        by_width_m=said.get(WIDTH),
         supported=bool(of[near].sum() >= LEAST_BELIEF),
+        by_list_m=said.get(LIST),
+        contradicting=tuple(
+            name for name, at_m in said.items() if not low_m <= at_m <= high_m
+        ),
     )
+
+
+def witnesses(told: Sequence[Told], listed: float | None) -> dict[str, float]:
+    """List what each witness says by itself: of elevations, the best one speaks."""
+    said: dict[str, float | None] = {}
+    if told:
+        best = max(told, key=lambda one: (one.shown.score, one.shown.texture))
+        said[STOREYS] = counted(best.shown)
+        said[WIDTH] = None if best.assumed else best.width_m / best.shown.aspect
+    said[LIST] = None if listed is None else listed * STOREY_M
+    return {name: at_m for name, at_m in said.items() if at_m is not None}
 
 
 def counted(one: Shown) -> float | None:
@@ -119,6 +141,15 @@ def storeys(one: Shown) -> Belief:
     far = whole < 1e-6
     near = np.where(far, weights.min(), kernel @ weights / np.where(far, 1.0, whole))
     return (1 - STOREYS_WRONG) * near / near.mean() + STOREYS_WRONG
+
+
+def by_list(storeys: float) -> Belief:
+    """Give the likelihood of heights under the storeys that a catalogue gives.
+
+    It may be of another building or another day.
+    """
+    near = normal(np.log(HEIGHTS_M), np.log(storeys * STOREY_M), LISTED_SD)
+    return (1 - LISTED_WRONG) * near + LISTED_WRONG / np.log(HIGHEST_M / LOWEST_M)
 
 
 def normal(

@@ -76,6 +76,7 @@ def raised(
             "aspect": one.aspect,
             "aspect_sd": one.aspect_sd,
             "storeys": one.storeys,
+            "clear": one.clear,
         }
         for one in seen
     }

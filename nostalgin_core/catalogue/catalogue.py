@@ -2,9 +2,9 @@
 
 Two kinds of list are read, by the names of their columns: the New York archive's own
 (1940 Block Number, 1940 Lot Number, LOT FRONTAGE ...) and a plain one (photo, block,
-lot, street, address, width_m, depth_m, side, order, credit). Columns that mean nothing
-here are kept and named in a warning. A row that makes no sense is a rejection that
-names it as a spreadsheet counts, header first. What a row's cells say is told in
+lot, street, address, width_m, depth_m, storeys, side, order, credit). Columns that mean
+nothing here are kept and named in a warning. A row that makes no sense is a rejection
+that names it as a spreadsheet counts, header first. What a row's cells say is told in
 `entry`.
 """
 
@@ -50,6 +50,7 @@ ALIASES: Final[Mapping[str, tuple[str, ...]]] = {
     "credit": ("credit", "rights_holder", "collection"),
     "other_address": ("alternative_building_number",),
     "other_street": ("alternative_street_name",),
+    "storeys": ("storeys", "stories", "floors", "number_of_floors", "numfloors"),
     "built": ("year_built",),
     "taken": ("date", "taken"),
     "source": ("source", "source_url", "record_url"),

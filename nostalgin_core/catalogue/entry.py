@@ -12,7 +12,13 @@ from pathlib import PurePosixPath
 from typing import Final
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.catalogue.lengths import count, later_building, length, number
+from nostalgin_core.catalogue.lengths import (
+    count,
+    floors,
+    later_building,
+    length,
+    number,
+)
 
 TAX_PHOTO: Final = re.compile(r"(?:^|_)(\d{5})_(\d{4})([a-z]?)$")
 
@@ -36,6 +42,7 @@ class Entry:
     taken: str  # the year or date of the photo, as it is written
     built: str  # the year of the building
     source: str  # the address of the archive's own record
+    storeys: float | None = None  # of the building, as the list counts them
 
 
 def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
@@ -53,9 +60,10 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
     width_m, doubts = length(cells, "width_m", "frontage_ft")
     depth_m, more = length(cells, "depth_m", "depth_ft")
     later = later_building(cells)
+    storeys, odd = floors(cells)
     if later:
-        width_m = depth_m = None
-        doubts, more = [later], []
+        width_m = depth_m = storeys = None
+        doubts, more, odd = [later], [], []
     order = number(cells, "order")
     ring, side = count(cells, "ring"), count(cells, "side")
     made = Entry(
@@ -74,8 +82,9 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         taken=cells.get("taken", ""),
         built="" if later else cells.get("built", ""),
         source=cells.get("source", ""),
+        storeys=storeys,
     )
-    return made, doubts + more
+    return made, doubts + more + odd
 
 
 def round_the_corner(entry: Entry, cells: Mapping[str, str]) -> list[Entry]:

@@ -14,6 +14,7 @@ from nostalgin_core.address import house_numbers
 FOOT_M: Final = 0.3048
 NARROWEST_FT, WIDEST_FT = 8.0, 450.0  # of a front; beyond, a digit was lost
 MOST_SIDES: Final = 99  # of a ring, and rings of a block
+MOST_STOREYS: Final = 110  # the tallest house of the century
 LOT_FT: Final = 25.0  # the common lot of New York: 25 by 100 feet
 
 
@@ -77,6 +78,17 @@ def length(
     return round(length_ft * FOOT_M, 3), []
 
 
+def floors(cells: Mapping[str, str]) -> tuple[float | None, list[str]]:
+    """Read how many storeys a list gives a building; nonsense is left out, and told."""
+    written = cells.get("storeys", "")
+    if not written:
+        return None, []
+    found = re.fullmatch(r"\d{1,3}(\.\d{1,9})?", written)
+    if found is None or not 1 <= float(written) <= MOST_STOREYS:
+        return None, [f"storeys {written[:40]!r} make no sense; they are left out"]
+    return float(written), []
+
+
 def later_building(cells: Mapping[str, str]) -> str:
     """Say why the archive's lengths are not those of the building in the photograph."""
     built = re.match(r"\d{4}", cells.get("built", ""))
@@ -85,7 +97,7 @@ def later_building(cells: Mapping[str, str]) -> str:
         return ""
     if cells.get("width_m") or cells.get("depth_m"):
         return ""  # written for this purpose
-    return f"its lengths are of a building of {built[0]}; they are left out"
+    return f"its measures are of a building of {built[0]}; they are left out"
 
 
 def number(cells: Mapping[str, str], field: str) -> float | None:

@@ -237,4 +237,5 @@ def _front(spot: Spot, *, ring: int, side: int, rank: int) -> Front:
         width_m=assumed_width(spot.address) if spot.width_m is None else spot.width_m,
         depth_m=spot.depth_m,
         width_assumed=spot.width_m is None,
+        storeys=spot.storeys,
     )

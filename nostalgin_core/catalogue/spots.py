@@ -23,6 +23,7 @@ class Spot:
     address: str
     width_m: float | None
     depth_m: float | None
+    storeys: float | None
     ring: int | None
     side: int | None
     order: float | None
@@ -80,6 +81,7 @@ def _spot(row: Entry, position: int, *, dense: bool) -> Spot:
         address=row.address,
         width_m=row.width_m,
         depth_m=row.depth_m,
+        storeys=row.storeys,
         ring=row.ring,
         side=row.side,
         order=row.order,
@@ -96,7 +98,10 @@ def _joined(first: Spot, second: Spot) -> Spot:
     """Keep what the first row says, and what only the second does."""
     empty = {
         name: getattr(second, name)
-        for name in ("address", "width_m", "depth_m", "ring", "side", "order")
+        for name in (
+            *("address", "width_m", "depth_m", "storeys"),
+            *("ring", "side", "order"),
+        )
         if getattr(first, name) in (None, "")
     }
     if first.numbers is None:

@@ -19,6 +19,7 @@ from jaxtyping import Bool, Float32, Shaped, UInt8
 
 from nostalgin_core import evidence
 from nostalgin_core.arrays import EvidenceMap, Gray, Mask
+from nostalgin_core.inpaint import floors
 from nostalgin_core.inpaint.repetition import guess
 from nostalgin_core.inpaint.rim import kept, marked, rim, soft
 from nostalgin_core.inpaint.slices import CHUNK_PX, CONTEXT_PX, Slice, share, slices
@@ -176,9 +177,9 @@ def _filled(
 
 
 def inpaint(elevation: Elevation, network: Network) -> Elevation:
-    """Fill an elevation as the pipeline does: slice by slice.
+    """Fill an elevation as the pipeline does: slice by slice, then floors deep inside.
 
     The evidence map already says what is filled; soft edges round it that are mostly
-    filled as well are marked so, too.
+    filled as well are marked so, too, and repeated floors as copied.
     """
-    return low_memory(elevation, network)
+    return floors.repeated(low_memory(elevation, network))

@@ -1,8 +1,9 @@
 """Carry a front from the photo to its elevation: pixels, alpha, and what each rests on.
 
 Nothing is painted here. Texels that the camera did not see stay black and are marked
-for the inpainter: `INPAINTED` where something hides the front, `BEYOND_FRAME` outside
-the frame. `NOTHING` is only what lies open to the sky over a stepped roof.
+for the inpainter: `INPAINTED` where something hides the front, or where its outline is
+torn beside a neighbour or at the ground, `BEYOND_FRAME` outside the frame. `NOTHING` is
+only what lies over the roof line (`skyline`).
 """
 
 import cv2
@@ -12,6 +13,7 @@ from jaxtyping import Float, UInt8
 from nostalgin_core import evidence, homography
 from nostalgin_core.arrays import Alpha, Corners, Gray, Mask, Matrix3
 from nostalgin_core.records import Box
+from nostalgin_core.rectify import skyline
 
 MOST_PX = 4096  # the longest side of an elevation: the largest atlas's side
 MOST_MAGNIFIED = 2.0  # texels per photo pixel of the quad
@@ -75,7 +77,7 @@ def elevate(
     framed = within(frame, photo_from_elevation, shape)
     seen = np.where(framed, np.clip(seen, 0, 1), np.float32(0))
     rests_on = np.full(shape, evidence.NOTHING, np.uint8)
-    rests_on[front | ~open_to_sky(~front)] = evidence.INPAINTED
+    rests_on[~skyline.over_roof(front)] = evidence.INPAINTED
     rests_on[seen > SOFT] = evidence.SOFT_EDGE
     rests_on[seen > evidence.SEEN] = evidence.PHOTOGRAPHED
     rests_on[~framed] = evidence.BEYOND_FRAME
@@ -109,16 +111,3 @@ def within(frame: Box, photo_from_elevation: Matrix3, shape: tuple[int, int]) ->
     x = np.arange(w)
     first = np.ceil(least).astype(np.intp)[:, None]
     return (x >= first) & (x <= np.floor(most).astype(np.intp)[:, None])
-
-
-def open_to_sky(empty: Mask) -> Mask:
-    """Tell which empty texels have a way to the top edge through empty ones.
-
-    What a mask leaves out below that, in the wall or at its foot, was covered by
-    something, since walls have no holes and stand on the ground.
-    """
-    if not empty[0].any():
-        return np.zeros_like(empty)
-    _, label = cv2.connectedComponents(empty.astype(np.uint8), connectivity=4)
-    at_top = np.unique(label[0])
-    return np.isin(label, at_top[at_top > 0])

@@ -3,6 +3,6 @@
 In: an elevation and where a camera saw it. Out: a score for every count of storeys.
 """
 
-from nostalgin_core.storeys.storeys import COUNTS, scores
+from nostalgin_core.storeys.storeys import COUNTS, EXTRA, flattened, scores
 
-__all__ = ["COUNTS", "scores"]
+__all__ = ["COUNTS", "EXTRA", "flattened", "scores"]

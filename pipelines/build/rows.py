@@ -86,7 +86,9 @@ def known(height: Height | None) -> dict[str, Any]:
         "height_high_m": height.high_m,
         "height_by_storeys_m": height.by_storeys_m,
         "height_by_width_m": height.by_width_m,
+        "height_by_list_m": height.by_list_m,
         "height_supported": height.supported,
+        "height_contradicted_by": list(height.contradicting),
     }
 
 

@@ -193,3 +193,18 @@ def slips_command(
         wanted = [name.strip() for name in blocks.split(",") if name.strip()]
         report = slips.evaluate(listed, blocks=wanted)
     tell(report, slips.text(report), as_json=as_json)
+
+
+@app.command("heights")
+def heights_command(
+    data: Annotated[Path, typer.Argument(help="Holds storeys.csv, counted by eye.")],
+    city: Annotated[Path, typer.Argument(help="A finished city of its photographs.")],
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """Measure heights against storeys counted by eye; wrong ones by name."""
+    with measuring():
+        from pipelines.evaluate import heights
+
+        report = heights.evaluate(data, city)
+    tell(report, heights.text(report), as_json=as_json)

@@ -11,6 +11,7 @@ ASSUMED_WIDTH_M: Final = 7.62  # 25 feet, the common lot of New York
 QUOTED: Final = 40  # letters
 MOST_SIDES, MOST_FRONTS = 99, 9999  # of a ring; no block has more
 LEAST_M, MOST_M = 1.0, 400.0  # of a front's width or depth
+MOST_STOREYS: Final = 110  # the tallest house of the century
 YES: Final = ("true", "1", "yes")
 NO: Final = ("false", "0", "no", "")
 
@@ -46,6 +47,7 @@ def front_from(cells: dict[str, Any]) -> Front | None:
         width_m=ASSUMED_WIDTH_M if width_m is None else width_m,
         depth_m=length(cells, "depth_m"),
         width_assumed=width_m is None or flag(cells, "width_assumed"),
+        storeys=storeys(cells),
     )
 
 
@@ -70,6 +72,15 @@ def length(cells: dict[str, Any], name: str) -> float | None:
     if value is not None and not LEAST_M <= value <= MOST_M:
         limits = f"{LEAST_M:g} to {MOST_M:g} metres"
         raise ValueError(f"{name} is {shown(cells, name)}, not {limits}")
+    return value
+
+
+def storeys(cells: dict[str, Any]) -> float | None:
+    """Read how many storeys a building has; an empty cell tells none."""
+    value = number(cells, "storeys")
+    if value is not None and not 1 <= value <= MOST_STOREYS:
+        limits = f"1 to {MOST_STOREYS} storeys"
+        raise ValueError(f"storeys is {shown(cells, 'storeys')}, not {limits}")
     return value
 
 

@@ -151,7 +151,7 @@ def words_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str
 
 
 def said(row: Row) -> dict[str, str]:
-    """Take what a row says of its photo: credit, licence, date, the archive's record."""
+    """Take what a row says of its photo: credit, licence, date, its own record."""
     date = str(row.cells.get("date") or "").strip()
     more = {"rights": row.licence, "source_url": row.source, "date": date}
     return {"credit": row.credit, **{name: word for name, word in more.items() if word}}

@@ -137,8 +137,12 @@ def _height(building: Building) -> Json:
         "height_high_m": known.high_m,
         "height_by_storeys_m": known.by_storeys_m,
         "height_by_width_m": known.by_width_m,
+        "height_by_list_m": known.by_list_m,
     }
     rounded = {n: round(v, CENTIMETRE) for n, v in told.items() if v is not None}
+    against = list(known.contradicting)
+    if against:
+        rounded |= {"height_contradicted_by": against}
     return {**rounded, "height_assumed": not known.supported}
 
 

@@ -36,9 +36,9 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 6,
     "matte": 7,
-    "rectify": 6,
-    "inpaint": 5,
-    "block": 4,
+    "rectify": 7,
+    "inpaint": 6,
+    "block": 5,
     "thumbnail": 2,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {

@@ -9,7 +9,7 @@ export const KINDS = [
   { code: 2, name: 'Photographed, at a soft edge', color: '#f0e442', strength: 0.42 },
   { code: 3, name: 'Hidden in the photograph, painted in', color: '#e69f00' },
   { code: 4, name: 'Beyond the photograph’s frame, painted in', color: '#d55e00' },
-  { code: 5, name: 'Copied from another side', color: '#56b4e9' },
+  { code: 5, name: 'Copied from elsewhere on it', color: '#56b4e9' },
   { code: 6, name: 'Assumed: no photograph', color: '#b48bd0' },
 ];
 

@@ -107,6 +107,8 @@ function facts(record, here) {
     ['Height', height(record)],
     ['By its storeys', record.height_by_storeys_m && metres(record.height_by_storeys_m)],
     ['By its width', record.height_by_width_m && metres(record.height_by_width_m)],
+    ['By the list', record.height_by_list_m && metres(record.height_by_list_m)],
+    ['Contradicting', (record.height_contradicted_by ?? []).map((one) => `its ${one}`).join(', ')],
   ];
   const list = make('dl');
   for (const [term, value] of rows) {

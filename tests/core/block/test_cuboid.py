@@ -100,3 +100,20 @@ def test_a_corner_wall_on_a_street_wears_a_copy_though_it_is_no_known_front() ->
         evidence.COPIED,
         evidence.ASSUMED,
     ]
+
+
+def test_an_elevation_that_is_mostly_invented_gives_way_to_the_next_best() -> None:
+    invented = replace(shown(1.0, photo="invented"), clear=0.2)
+    worse = shown(1.0, score=0.3, photo="seen")
+    both = cuboid.cuboid(PLAIN, {"f": [invented, worse]})
+    assert both.walls[0].texture == ("seen", 0)
+    alone = cuboid.cuboid(PLAIN, {"f": [invented]})
+    assert alone.walls[0].texture is None
+    assert alone.walls[0].evidence == evidence.ASSUMED
+
+
+def test_at_a_corner_it_gives_way_to_a_copy_of_the_other_front() -> None:
+    invented = replace(shown(1.0, photo="invented"), clear=0.2)
+    made = cuboid.cuboid(CORNER, {"f": [invented], "g": [shown(1.0)]})
+    assert made.walls[0].texture == ("p", 0)
+    assert made.walls[0].evidence == evidence.COPIED

@@ -78,3 +78,31 @@ def test_a_belief_is_a_density(count: int) -> None:
     assert one.sum() == pytest.approx(1.0)
     assert one.shape == HEIGHTS_M.shape
     assert (one >= 0).all()
+
+
+def test_a_list_of_storeys_settles_what_elevations_leave_open() -> None:
+    lost = Told(8.0, True, Shown(("p", 0), 0.2, 0.004, 0.9))  # noqa: FBT003
+    alone, listed = heights.height([lost]), heights.height([lost], 5.0)
+    assert alone is not None
+    assert listed is not None
+    assert listed.height_m == pytest.approx(5 * STOREY_M, rel=0.15)
+    assert listed.high_m / listed.low_m < alone.high_m / alone.low_m
+    assert listed.by_list_m == pytest.approx(5 * STOREY_M)
+
+
+def test_a_list_alone_gives_a_height_that_is_supported() -> None:
+    listed = heights.height([], 6.0)
+    assert listed is not None
+    assert listed.supported
+    assert listed.low_m < 6 * STOREY_M < listed.high_m
+
+
+def test_a_list_of_another_building_is_outvoted_and_named() -> None:
+    sure = [
+        Told(width_m, False, Shown(("p", n), width_m / 18.0, 0.01, 0.9, rows(5)))  # noqa: FBT003
+        for n, width_m in enumerate((8.0, 12.0, 20.0))
+    ]
+    listed = heights.height(sure, 40.0)
+    assert listed is not None
+    assert listed.height_m == pytest.approx(18.0, rel=0.25)
+    assert listed.contradicting == ("list",)
