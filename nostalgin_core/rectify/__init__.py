@@ -4,7 +4,7 @@ In: a `Photo` and what was matted. Out: an `Elevation` or a `Rejection` a facade
 Paper: section 3.3. Open `rectify` first, then `orient`.
 """
 
-from nostalgin_core.rectify.legible import detail, stretched
+from nostalgin_core.rectify.legible import sharpness, stretched
 from nostalgin_core.rectify.rectify import rectify
 
-__all__ = ["detail", "rectify", "stretched"]
+__all__ = ["rectify", "sharpness", "stretched"]
