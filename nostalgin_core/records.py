@@ -190,7 +190,7 @@ class Seen:
     photographed: float  # share of the elevation that a camera saw
     storeys: tuple[float, ...] = ()  # a score for each of `storeys.COUNTS`
     stretched: float = 0.0  # share of what a camera saw that is smeared
-    detail: float = 5.0  # contrast of the finest that it shows, gray levels
+    sharpness: float = 5.0  # contrast of the finest that it shows, gray levels
 
     @property
     def clear(self) -> float:

@@ -133,6 +133,6 @@ def seen(key: str, facade: Facade, view: Elevation) -> Seen:
         area_px=float(facade.alpha.sum(dtype=np.float64)),
         photographed=photographed / max(somewhere, 1),
         stretched=rectify.stretched(view),
-        detail=rectify.detail(view, float(facade.alpha.sum(dtype=np.float64))),
+        sharpness=rectify.sharpness(view, float(facade.alpha.sum(dtype=np.float64))),
         storeys=tuple(storeys.scores(view.image, np.isin(view.evidence, by_camera))),
     )

@@ -20,7 +20,7 @@ SECOND = 0.6  # of the best target score, which a corner's second facade must re
 BEFORE_BOTH = 0.5  # target score of a second front whose length no list gives
 MISMATCH = 2.5  # of two facades' widths to the lot's: quads at corners are rough
 HALF_AREA_PX = 20_000.0  # a facade of this many pixels gets half the credit for size
-HALF_DETAIL = 2.0  # gray levels: so does one in haze or out of focus
+HALF_SHARPNESS = 2.0  # gray levels: so does one in haze or out of focus
 HALF_SPREAD = 0.15  # so does one whose aspect is known to 15 %
 
 
@@ -89,8 +89,8 @@ def score(one: Seen) -> float:
         * one.target_score
         * (0.25 + 0.75 * one.clear)
         * size
-        * one.detail
-        / (one.detail + HALF_DETAIL)
+        * one.sharpness
+        / (one.sharpness + HALF_SHARPNESS)
         / (1.0 + spread / HALF_SPREAD)
     )
 

@@ -43,7 +43,7 @@ def stretched(view: Elevation) -> float:
     return float(far[seen].mean())
 
 
-def detail(view: Elevation, photo_px: float) -> float:
+def sharpness(view: Elevation, photo_px: float) -> float:
     """Measure the contrast of what is as fine as the photo's pixels, in gray levels.
 
     `photo_px` are the pixels of the photo that show the front: an elevation that

@@ -108,7 +108,7 @@ def test_every_photo_of_a_lot_is_scored() -> None:
         {"target_score": 0.5},
         {"photographed": 0.3},
         {"stretched": 0.7},
-        {"detail": 1.0},
+        {"sharpness": 1.0},
         {"area_px": 2_000.0},
         {"aspect_sd": 0.5},
     ],

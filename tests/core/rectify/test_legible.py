@@ -6,7 +6,7 @@ import pytest
 
 from nostalgin_core import evidence, homography
 from nostalgin_core.records import Elevation
-from nostalgin_core.rectify import detail, stretched
+from nostalgin_core.rectify import sharpness, stretched
 
 H, W = 90, 120
 EDGES = np.array([[0.0, 0.0], [W, 0.0], [W, H], [0.0, H]])
@@ -57,10 +57,10 @@ def test_a_blurred_front_has_less_detail_and_a_pale_one_too() -> None:
     sharp = seen(EDGES)
     blurred = cv2.GaussianBlur(sharp.image, (0, 0), 3.0)
     pale = (sharp.image // 4 + 90).astype(np.uint8)
-    assert detail(replace(sharp, image=blurred), 1.0 * H * W) < 0.3 * detail(
+    assert sharpness(replace(sharp, image=blurred), 1.0 * H * W) < 0.3 * sharpness(
         sharp, 1.0 * H * W
     )
-    assert detail(replace(sharp, image=pale), 1.0 * H * W) < 0.3 * detail(
+    assert sharpness(replace(sharp, image=pale), 1.0 * H * W) < 0.3 * sharpness(
         sharp, 1.0 * H * W
     )
 
@@ -68,18 +68,18 @@ def test_a_blurred_front_has_less_detail_and_a_pale_one_too() -> None:
 def test_magnifying_adds_no_detail() -> None:
     small = seen(EDGES)
     large = cv2.resize(small.image, (3 * W, 3 * H), interpolation=cv2.INTER_CUBIC)
-    assert detail(seen(EDGES, large), 1.0 * H * W) == pytest.approx(
-        detail(small, 1.0 * H * W), rel=0.35
+    assert sharpness(seen(EDGES, large), 1.0 * H * W) == pytest.approx(
+        sharpness(small, 1.0 * H * W), rel=0.35
     )
 
 
 def test_what_nobody_saw_has_no_detail() -> None:
     blind = seen(EDGES)
     blind.evidence[:] = evidence.INPAINTED
-    assert detail(blind, 0.0) == 0.0
+    assert sharpness(blind, 0.0) == 0.0
     assert stretched(blind) == 0.0
 
 
 def test_a_sliver_of_a_few_pixels_is_looked_at_no_coarser_than_a_small_front() -> None:
     sliver = seen(EDGES)
-    assert detail(sliver, 0.5) == detail(sliver, H * W / 16.0)
+    assert sharpness(sliver, 0.5) == sharpness(sliver, H * W / 16.0)
