@@ -58,7 +58,11 @@ UNUSED: Final = frozenset(  # the archive's columns that say nothing about place
         *("delete", "borough", "qc", "flagged", "notes", "landmark", "roll_number"),
         *("alternative_block_number", "alternative_lot_number", "zip_code"),
         *("complete_address", "condition_hole_punch_deteriorated_tape"),
-        *("year_altered1", "year_altered2", "rights", "source_url"),
+        *("year_altered1", "year_altered2"),
+        # They say nothing about place or size, but are told of each photograph.
+        *("rights", "rights_statement", "usage_rights", "copyright"),
+        *("license", "licence", "rights_uri"),
+        *("source_url", "source", "url", "homepage"),
     }
 )
 FIRST_ROW: Final = 2
@@ -76,7 +80,10 @@ class Catalogue:
 
 
 def read(
-    rows: Iterable[Mapping[str, str | None]], *, name: str = "catalogue"
+    rows: Iterable[Mapping[str, str | None]],
+    *,
+    name: str = "catalogue",
+    first: int = FIRST_ROW,
 ) -> Catalogue:
     """Read the rows of a catalogue, each by itself; empty ones are only counted.
 
@@ -84,14 +91,14 @@ def read(
     """
     given: list[dict[Any, Any]] = [dict(row) for row in rows]
     listed = [{key: cell for key, cell in row.items() if key} for row in given]
-    columns = _columns(listed)
+    every = list(dict.fromkeys(key for row in listed for key in row))
+    columns = _columns(every)
     warnings = [
         f"{name}: column {_shown(column)} is not known; it is kept"
-        for column in dict.fromkeys(key for row in listed for key in row)
-        if column not in columns.values() and _plain(column) not in UNUSED
+        for column in unknown(every)
     ]
     entries, rejections = [], []
-    for number, (row, whole) in enumerate(zip(listed, given, strict=True), FIRST_ROW):
+    for number, (row, whole) in enumerate(zip(listed, given, strict=True), first):
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
         if cells.get("photo"):
             cells["photo"] = str(row[columns["photo"]])  # blanks may be of its name
@@ -110,6 +117,13 @@ def read(
         entries += [entry, *round_the_corner(entry, cells)]
         warnings += [f"{name} row {number}: {doubt}" for doubt in doubts]
     return Catalogue(tuple(entries), tuple(rejections), tuple(warnings))
+
+
+def unknown(columns: Iterable[str]) -> list[str]:
+    """List the columns that mean nothing here."""
+    names = list(columns)
+    used = _columns(names).values()
+    return [one for one in names if one not in used and plain(one) not in UNUSED]
 
 
 def matched(
@@ -150,9 +164,9 @@ def matched(
     return found, tuple(rejections)
 
 
-def _columns(rows: Sequence[Mapping[str, str | None]]) -> dict[str, str]:
+def _columns(columns: Iterable[str]) -> dict[str, str]:
     """Tell which column holds which field; of several names the first listed wins."""
-    names = {_plain(name): name for row in rows for name in row}
+    names = {plain(name): name for name in columns}
     fields = {}
     for field, aliases in ALIASES.items():
         known = [names[alias] for alias in aliases if alias in names]
@@ -196,7 +210,7 @@ def _shown(words: object) -> str:
     return repr(text if len(text) <= QUOTED else f"{text[:QUOTED]}...")
 
 
-def _plain(column: object) -> str:
+def plain(column: object) -> str:
     """Write a column's name in small letters, one underscore between its words."""
     return re.sub(r"[^a-z0-9]+", "_", str(column).casefold()).strip("_")
 

@@ -8,10 +8,16 @@ from nostalgin_core.records import Elevation, Mesh, Texture
 
 
 def model(
-    settled: Settled, elevations: Mapping[Texture, Elevation], *, credit: str = ""
+    settled: Settled,
+    elevations: Mapping[Texture, Elevation],
+    *,
+    credit: str = "",
+    photographs: Mapping[str, Mapping[str, str]] | None = None,
 ) -> tuple[bytes, Mesh]:
     """Make a block's GLB from its cuboids and the finished elevations they wear.
 
+    `photographs` tells the rights, licence and date of each that it wears, by key; they
+    stand in the file's `asset.extras`, where anything is told.
     Returns its bytes, and all its buildings as one mesh, to be measured.
     """
     one = settled.block
@@ -31,6 +37,10 @@ def model(
             **facts.measures(one),
         },
         copyright=credit,
-        extras={"block": one.block, "evidence": picture.legend()},
+        extras={
+            "block": one.block,
+            "evidence": picture.legend(),
+            **({"photographs": photographs} if photographs else {}),
+        },
     )
     return data, mesh.joined([each for _, each in meshes])

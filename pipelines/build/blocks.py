@@ -158,10 +158,17 @@ def contents(one: Placed, bench: Bench) -> list[str]:
         bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
         for ref in one.worn()
     ]
-    return [
-        json.dumps([one.key, one.task.credit, buildings, model.table(one.settled)]),
-        *finished,
-    ]
+    facts = [one.key, one.task.credit, buildings, model.table(one.settled)]
+    told = rights(one)
+    return [json.dumps([*facts, told] if told else facts), *finished]
+
+
+def rights(one: Placed) -> dict[str, dict[str, str]]:
+    """Tell whose the photographs are that a block's walls wear, by key, if told."""
+    told = dict(one.task.told)
+    photos = {ref.seen.photo: ref.photo for ref in one.worn()}
+    names = {key: (ref.root, ref.name) for key, ref in sorted(photos.items())}
+    return {key: dict(told[name]) for key, name in names.items() if name in told}
 
 
 def walls(building: Building) -> list[dict[str, Any]]:
@@ -172,7 +179,8 @@ def walls(building: Building) -> list[dict[str, Any]]:
 def glb(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
     views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
-    data, whole = model.model(one.settled, views, credit=one.task.credit)
+    whose = {"credit": one.task.credit, "photographs": rights(one)}
+    data, whole = model.model(one.settled, views, **whose)
     row = {
         "block": one.key,
         "glb": data,

@@ -3,7 +3,7 @@
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
 import typer
 
@@ -55,7 +55,7 @@ def demo_command(
     told(str(folder), beam=beam)  # a mistyped option is told before anything is painted
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
-        named = {"credit": CREDIT, "title": TITLE}
+        named: dict[str, Any] = {"credit": CREDIT, "title": TITLE}
         made = index.index(photos, listed, str(folder), force=True, **named)
     except OSError as problem:
         raise unwritable(folder, problem) from problem

@@ -1,6 +1,5 @@
 """`nostalgin index`: a folder of photographs and a list become a manifest."""
 
-from pathlib import Path
 from typing import Annotated, Final
 
 import typer
@@ -18,15 +17,20 @@ Examples:
   nostalgin index photos --catalogue list.csv -o city --block 993
 
   nostalgin index photos -o city --title "Midtown, 1940"
+
+  nostalgin index https://iiif.example.org/street/manifest.json -o city
 """
 
 
 def index_command(
-    photos: Annotated[Path, typer.Argument(help="The folder that holds the photos.")],
+    photos: Annotated[
+        str, typer.Argument(help="The folder of the photos, or a IIIF manifest.")
+    ],
     city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
     *,
     catalogue: Annotated[
-        Path | None, typer.Option(help="CSV with block, lot, street, address, width.")
+        str | None,
+        typer.Option(help="A list with block, lot, street...: CSV, JSON or IIIF."),
     ] = None,
     block: Annotated[
         list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
@@ -53,7 +57,13 @@ def index_command(
     try:
         with held(Store(city)):
             made = index.index(
-                photos, catalogue, city, blocks=block or (), force=force, **named
+                photos,
+                catalogue,
+                city,
+                blocks=block or (),
+                force=force,
+                tell=voice.say,
+                **named,
             )
     except (index.Nothing, Busy) as problem:
         raise fail(str(problem)) from problem

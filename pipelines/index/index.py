@@ -1,6 +1,5 @@
 """From a folder of photos and a catalogue to the manifest of a city."""
 
-import hashlib
 import os
 import re
 from collections import defaultdict
@@ -10,19 +9,17 @@ from pathlib import Path
 from typing import Final
 
 from nostalgin_core import catalogue
-from nostalgin_core.catalogue import Catalogue, Entry, from_file_name
+from nostalgin_core.catalogue import Catalogue, Entry
 from nostalgin_core.records import Front, Rejection
-from pipelines import bounded
-from pipelines.index import comma, manifest
+from pipelines.index import lists, manifest
 from pipelines.index.cells import MOST_FRONTS
 from pipelines.index.images import Nothing, images, spelt_out
+from pipelines.index.names import block_and_lot, row_name
 from pipelines.index.title import cleaned
+from pipelines.index.told import Told, told
 from pipelines.store import Store, textual
 
-LONGEST: Final = 48  # letters of a folder that names a block
-# 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
 MOST_HOMELESS: Final = 0.5  # of the photos
-BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
 
 
 @dataclass(frozen=True)
@@ -44,17 +41,19 @@ class Indexed:
 
 
 def index(
-    photos: Path,
-    listed: Path | None,
+    photos: str | Path,
+    listed: str | Path | None,
     city: str,
     *,
     blocks: Sequence[str] = (),
     credit: str = "",
     title: str = "",
     force: bool = False,
+    tell: lists.Tell = lists.silent,
 ) -> Indexed:
     """Write a city folder's manifest; without a `title` its folder's name is shown.
 
+    `photos` is a folder, or a IIIF source, which is brought into the city folder.
     Without a catalogue the file names tell block and lot; where they don't, the photos
     of a folder stand in one row, in the order of their names. A manifest that people
     have mended is replaced by `force` alone, and a copy of it is kept.
@@ -67,17 +66,20 @@ def index(
         raise Nothing(f"--credit {spelt_out(credit)} is not UTF-8: write it anew")
     store = Store(city)
     mended = replaceable(store, force=force)
-    names, unnamed = images(photos, city)
-    read = from_names(names, photos) if listed is None else from_csv(listed)
+    folder, given = lists.opened(photos, listed, city, tell=tell)
+    names, unnamed = images(folder, city)
+    read = from_names(names, folder) if given is None else from_list(given)
+    beside = told_by(given, read.entries)
     entries, crowded = sparse(read.entries)
-    wanted = of_blocks(entries, blocks, crowded, where=listed or photos)
+    wanted = of_blocks(entries, blocks, crowded, where=Path(listed or photos))
     fronts, doubts = catalogue.fronts(wanted)
     shown, strangers = catalogue.matched(entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
-    root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
+    root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
     credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
     cells = [
         manifest.row_of(photo, front, root=root, credit=credits_of.get(photo, credit))
+        | beside.of(photo, shown.get(photo, ()), front)
         for photo, front in rows
     ]
     kept = [] if mended is None else [copied(store, *mended)]
@@ -94,7 +96,12 @@ def index(
             *crowded,
             *(strangers if not blocks else ()),
         ),
-        warnings=(*about(read.warnings, {e.row for e in wanted}), *doubts, *kept),
+        warnings=(
+            *about(read.warnings, {e.row for e in wanted}),
+            *beside.warnings,
+            *doubts,
+            *kept,
+        ),
     )
 
 
@@ -171,20 +178,22 @@ def first_credit(entries: Sequence[Entry]) -> str:
     return next((entry.credit for entry in entries if entry.credit), "")
 
 
-def from_csv(path: Path) -> Catalogue:
-    """Read a catalogue.
+def from_list(listed: lists.Listing) -> Catalogue:
+    """Read a list.
 
     Raises:
-        Nothing: if it can't be read, or no row of it makes sense.
+        Nothing: if no row of it makes sense.
     """
-    try:
-        _, rows = comma.parsed(bounded.read(path, bounded.TABLE_BYTES))
-    except OSError as problem:
-        raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
-    except comma.NoTable as problem:
-        raise Nothing(f"{path} {problem}") from problem
-    read = catalogue.read(rows, name=path.name)
-    return useful(read, path)
+    return useful(listed.read(), Path(listed.name))
+
+
+def told_by(listed: lists.Listing | None, entries: Sequence[Entry]) -> Told:
+    """Gather what a list tells of photographs beside their place."""
+    if listed is None:
+        return Told({}, {})
+    reserved, beside = manifest.SCHEMA.names, listed.beside
+    named = {"name": listed.name, "first": listed.first, "beside": beside}
+    return told(listed.rows, entries, reserved=reserved, **named)
 
 
 def useful(read: Catalogue, path: Path) -> Catalogue:
@@ -213,22 +222,6 @@ def from_names(names: Sequence[str], folder: Path) -> Catalogue:
         block, lot = told[name] or row
         rows.append({"photo": name, "block": block, "lot": lot})
     return useful(catalogue.read(rows, name="file names"), folder)
-
-
-def row_name(folder: str) -> str:
-    """Call a row of photos after its folder; a name that is no block's is replaced."""
-    if len(folder) <= LONGEST and not set(folder) & set("/\\\0") and folder.strip():
-        return folder
-    return f"row {hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]}"
-
-
-def block_and_lot(name: str) -> tuple[str, str] | None:
-    """Read block and lot from a file name, if it tells both."""
-    exact = from_file_name(name)
-    if exact is not None:
-        return exact
-    found = BLOCK_AND_LOT.search(Path(name).stem.strip().casefold())
-    return (str(int(found[1])), str(int(found[2]))) if found else None
 
 
 def paired(

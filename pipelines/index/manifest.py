@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import io
 import time
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -18,7 +19,7 @@ import pyarrow.parquet as pq
 
 from nostalgin_core.records import Front, Rejection
 from pipelines import bounded
-from pipelines.index import comma
+from pipelines.index import comma, told
 from pipelines.index.cells import text
 from pipelines.index.row import CSV, Row, contradictions, usable
 from pipelines.store import Store, parquet_bytes, tables
@@ -38,6 +39,8 @@ FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
 BATCH: Final = 1000  # rows
+# Columns that a list may tell of a photograph; none stands where nothing is told.
+TOLD: Final = (*told.TOLD, told.AS_WRITTEN)
 DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
 
@@ -105,14 +108,14 @@ def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
     Returns the name of the file that holds their work, and its bytes.
     """
     csv, parquet = optional(store, CSV), optional(store, PARQUET)
-    told: dict[bytes, bytes] = {}
+    marks: dict[bytes, bytes] = {}
     if parquet is not None:
         with contextlib.suppress(pa.ArrowException, OSError):  # what it told is lost
-            told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
+            marks = pq.read_schema(io.BytesIO(parquet)).metadata or {}
     if csv is None:
-        return (PARQUET, parquet) if parquet is not None and MENDED in told else None
-    same = told.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
-    return None if same and MENDED not in told else (CSV, csv)
+        return (PARQUET, parquet) if parquet is not None and MENDED in marks else None
+    same = marks.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
+    return None if same and MENDED not in marks else (CSV, csv)
 
 
 def keep_copy(store: Store, name: str, data: bytes) -> str:
@@ -160,20 +163,20 @@ def read(store: Store) -> Manifest:
         Unusable: if there is none, or if what there is makes no sense.
     """
     mended, parquet = optional(store, CSV), optional(store, PARQUET)
-    title = ""
+    title, ours = "", list[str]()
     if parquet is not None:
         table = parsed(parquet, store.root)
-        told = table.schema.metadata or {}
-        title = told.get(TITLE, b"").decode(errors="replace")
-        mark = told.get(CSV_HASH, b"").decode(errors="replace")
+        marks, ours = table.schema.metadata or {}, table.column_names
+        title = marks.get(TITLE, b"").decode(errors="replace")
+        mark = marks.get(CSV_HASH, b"").decode(errors="replace")
         if mended is None or hashlib.sha256(mended).hexdigest() == mark:
             rows = table.to_pylist()
-            found = checked(rows, table.column_names, parquet, PARQUET)
+            found = checked(rows, ours, parquet, PARQUET, ours=ours)
             return replace(found, title=title)
     if mended is None:
         raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    found = checked(rows, names, mended, CSV)
+    found = checked(rows, names, mended, CSV, ours=ours)
     return replace(found, mended=parquet is not None, title=title)
 
 
@@ -198,15 +201,15 @@ def parsed(data: bytes, where: str) -> pa.Table:
     """Parse the Parquet form."""
     try:
         file = pq.ParquetFile(io.BytesIO(data))
-        told = file.metadata
-        groups = [told.row_group(number) for number in range(told.num_row_groups)]
+        footer = file.metadata
+        groups = [footer.row_group(n) for n in range(footer.num_row_groups)]
         bounded.fits(
             sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
         )
         names = file.schema_arrow.names
         if len(set(names)) < len(names):
             raise pa.ArrowInvalid("two columns have one name")
-        if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
+        if footer.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
             raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
         table = decoded(file)
         table.validate(full=True)  # or else words may be no UTF-8
@@ -236,8 +239,8 @@ def decoded(file: pq.ParquetFile) -> pa.Table:
     if not batches:
         return file.read()
     columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
-    names, told = file.schema_arrow.names, file.schema_arrow.metadata
-    return pa.Table.from_arrays(columns, names).replace_schema_metadata(told)
+    names, marks = file.schema_arrow.names, file.schema_arrow.metadata
+    return pa.Table.from_arrays(columns, names).replace_schema_metadata(marks)
 
 
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
@@ -249,11 +252,17 @@ def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
 
 
 def checked(
-    cells: list[comma.Cells], names: list[str], data: bytes, name: str
+    cells: list[comma.Cells],
+    names: list[str],
+    data: bytes,
+    name: str,
+    *,
+    ours: Collection[str] = (),
 ) -> Manifest:
     """Check every row by itself, so that one bad row spoils no other.
 
-    Rows in which nothing is written are counted, and else ignored.
+    Rows in which nothing is written are counted, and else ignored. `ours` are columns
+    that we have written ourselves: a list's are kept, and need no warning.
     """
     missing = [one for one in REQUIRED if one not in names]
     if missing:
@@ -261,7 +270,7 @@ def checked(
             f"{name} lacks the columns {', '.join(missing)}: it has "
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
-    unknown = [one for one in names if one not in SCHEMA.names]
+    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD, *ours)]
     warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
     results = [
         usable(number, row)

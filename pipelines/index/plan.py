@@ -35,6 +35,8 @@ class BlockTask:
     fronts: tuple[Front, ...]  # in the order of ring and rank
     photos: tuple[tuple[Name, str], ...]  # and a front that each may show
     credit: str
+    # What is told of each photo: credit, rights, licence, date, where any is.
+    told: tuple[tuple[Name, tuple[tuple[str, str], ...]], ...] = ()
 
     @property
     def key(self) -> str:
@@ -91,8 +93,15 @@ def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:
         for row in rows
         if row.photo and row.front
     }
-    named = sorted({row.credit for row in rows if row.credit})
-    return BlockTask(block, tuple(ordered), tuple(sorted(pairs)), "; ".join(named))
+    named = "; ".join(sorted({row.credit for row in rows if row.credit}))
+    told: dict[Name, dict[str, str]] = {}
+    for row in rows:
+        if row.photo and row.told:
+            words = {"credit": row.credit} if row.credit else {}
+            told.setdefault((rooted(row.root, city), row.photo), words | row.told)
+    facts = tuple((name, tuple(sorted(own.items()))) for name, own in told.items())
+    fronts_in_order, shown = tuple(ordered), tuple(sorted(pairs))
+    return BlockTask(block, fronts_in_order, shown, named, tuple(sorted(facts)))
 
 
 def homeless(row: Row) -> Rejection:

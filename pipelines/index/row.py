@@ -10,6 +10,7 @@ from nostalgin_core.catalogue import inside
 from nostalgin_core.records import Front, Rejection
 from pipelines.index import comma
 from pipelines.index.cells import as_written, front_from, quoted, text
+from pipelines.index.told import AS_WRITTEN, TOLD
 
 CSV: Final = "manifest.csv"
 LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
@@ -25,6 +26,12 @@ class Row:
     front: Front | None
     credit: str
     cells: dict[str, Any] = field(compare=False)  # all that was written in the row
+
+    @property
+    def told(self) -> dict[str, str]:
+        """Give what is told of the photograph beside its place: rights, licence..."""
+        known = {name: text(self.cells, name) for name in (*TOLD, AS_WRITTEN)}
+        return {name: words for name, words in known.items() if words}
 
     @property
     def key(self) -> str:

@@ -74,7 +74,7 @@ def models(
         for building in record["buildings"]:
             building["rejections"] += why.get(building["id"], [])
             for photo in building["photos"]:  # it says whose the block's photos are
-                photo["credit"] = whose.get(photo["key"], photo.get("credit", ""))
+                photo.update(whose.get(photo["key"], {}))
             there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo
@@ -125,17 +125,17 @@ def of_buildings(
         if row.front is not None and key is not None:
             photo = {"key": key, "used": False, "caption": row.photo}
             building = f"{row.front.block}-{row.front.lot}"
-            told[building][key] = photo | {"credit": row.credit}
+            told[building][key] = photo | {"credit": row.credit} | row.told
     return {building: list(own.values()) for building, own in told.items()}
 
 
-def credits_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, str]:
-    """Tell whom each photo is credited to, by its key."""
-    credit: dict[str, str] = {}
+def credits_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str]]:
+    """Tell whom each photo is credited to, and its rights and date, by its key."""
+    whose: dict[str, dict[str, str]] = {}
     for row, key in shown:
         if key is not None:
-            credit.setdefault(key, row.credit)
-    return credit
+            whose.setdefault(key, {"credit": row.credit} | row.told)
+    return whose
 
 
 def reasons(

@@ -68,7 +68,7 @@ function photographs(record, name) {
   return record.photos.map((photo) => figure(photo, name));
 }
 
-function figure({ file, credit, caption, used }, name) {
+function figure({ file, credit, caption, used, date, rights, license }, name) {
   const image = make('img', { alt: `Photograph of ${name}`, decoding: 'async' });
   const link = make('a', { target: '_blank', rel: 'noopener', title: 'Open the photograph' }, [image]);
   const holder = make('figure', {}, [link]);
@@ -77,7 +77,8 @@ function figure({ file, credit, caption, used }, name) {
     image.addEventListener('error', absent);
     image.src = link.href = file;
   } else absent();
-  const words = [caption, used === false ? 'Not the one on the model.' : null].filter(Boolean);
+  const other = used === false ? 'Not the one on the model.' : null;
+  const words = [caption, date, other, rights, license].filter(Boolean);
   const lines = words.map((text) => make('span', { textContent: text }));
   if (credit) lines.push(make('cite', { textContent: credit }));
   if (lines.length) holder.append(make('figcaption', {}, lines));
