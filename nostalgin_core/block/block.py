@@ -46,8 +46,11 @@ def block(
     aspects: Aspects,
     *,
     copied: bool = False,
+    heights_m: Mapping[str, float] | None = None,
 ) -> Block:
     """Build the cuboids of one block, ring by ring, in the order of its fronts.
+
+    `heights_m` are heights that are known, by building: no photograph is asked then.
 
     Raises:
         ValueError: if there are no fronts.
@@ -63,7 +66,9 @@ def block(
     footprints = _distinct([one for ring in placed for one in ring.footprints])
     return Block(
         block=name,
-        buildings=tuple(raised(footprints, shown, guessed, copied=copied)),
+        buildings=tuple(
+            raised(footprints, shown, guessed, copied=copied, heights_m=heights_m or {})
+        ),
         outline_m=tuple(ring.outline_m for ring in placed),
         closure_m=tuple(ring.closure_m for ring in placed),
     )
@@ -137,9 +142,15 @@ def raised(
     guessed: Collection[str] = (),
     *,
     copied: bool = False,
+    heights_m: Mapping[str, float],
 ) -> list[Building]:
     """Raise all buildings; those without a height get their neighbours' median."""
-    known = [heights.height(told(one, shown, guessed)) for one in footprints]
+    known = [
+        heights.measured(heights_m[one.building_id], told(one, shown, guessed))
+        if one.building_id in heights_m
+        else heights.height(told(one, shown, guessed))
+        for one in footprints
+    ]
     seen = [(i, one.height_m) for i, one in enumerate(known) if one is not None]
 
     def neighbourly(index: int) -> float:

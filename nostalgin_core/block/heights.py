@@ -85,6 +85,15 @@ def height(told: Sequence[Told]) -> Height | None:
     )
 
 
+def measured(height_m: float, told: Sequence[Told]) -> Height:
+    """Tell a height that somebody knows; what the elevations say of it stays told."""
+    seen = height(told)
+    by_storeys_m = seen.by_storeys_m if seen else None
+    by_width_m = seen.by_width_m if seen else None
+    known = (height_m, height_m, height_m)
+    return Height(*known, by_storeys_m, by_width_m, supported=True)
+
+
 def counted(one: Shown) -> float | None:
     """Tell the height that an elevation's storeys give by themselves, if they do."""
     if not one.storeys or max(one.storeys) < LEAST_SCORE:

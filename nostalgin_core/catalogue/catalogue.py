@@ -67,6 +67,7 @@ UNUSED: Final = frozenset(  # the archive's columns that say nothing about place
 )
 FIRST_ROW: Final = 2
 QUOTED: Final = 80  # letters
+NAMED: Final = 8  # blocks of a list
 LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
 
 
@@ -149,6 +150,9 @@ def matched(
             by_name[PurePosixPath(where).name].append(entry)
         by_lot[entry.block, entry.lot].append(entry)
     found, rejections = {}, []
+    known = {entry.block for entry in entries}
+    blocks = sorted(known, key=lambda one: (len(one), one))
+    shown = ", ".join(blocks[:NAMED]) + (" ..." if len(blocks) > NAMED else "")
     for photo in photos:
         lot = from_file_name(photo)
         where = _path(photo)
@@ -156,6 +160,10 @@ def matched(
         rows = rows or (by_lot.get(lot) if lot else None)
         if rows:
             found[photo] = tuple(rows)
+        elif lot and lot[0] not in known:
+            why = "its block is not on the list"
+            detail = f"it has {shown[:QUOTED]}; is it another's list?"
+            rejections.append(Rejection(photo, "catalogue", why, detail))
         else:
             detail = "add a row with its name, block and lot to the catalogue"
             rejections.append(

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
@@ -16,7 +16,7 @@ from nostalgin_core.block import Settled
 from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
 from pipelines.build.bench import Bench
 from pipelines.build.stages import FacadeRef, inpainted, named
-from pipelines.index.plan import BlockTask
+from pipelines.index.plan import BlockTask, Name
 from pipelines.store import tables
 
 MODEL: Final = pa.schema(
@@ -104,7 +104,7 @@ def placed(
     del bench  # numbers alone: nothing is read or kept
     _, parts = grouped
     (task,) = parts["task"]
-    facades = tuple(sorted(parts["facades"], key=order))
+    facades = meant(sorted(parts["facades"], key=order), dict(task.targets_px))
     names = {ref.seen.photo: ref.photo.name for ref in reversed(facades)}
     keys = {(ref.photo.root, ref.photo.name): ref.seen.photo for ref in facades}
     candidates: dict[str, list[str]] = {}
@@ -112,9 +112,34 @@ def placed(
         if photo in keys:
             candidates.setdefault(keys[photo], []).append(front_id)
     seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
-    settled = block.settle(task.block, task.fronts, candidates, seen)
+    known = dict(task.heights_m)
+    settled = block.settle(task.block, task.fronts, candidates, seen, heights_m=known)
     rejections = [named(one, names[one.key]) for one in settled.rejections]
     return [Placed(task, facades, settled), *rejections]
+
+
+def meant(
+    facades: Sequence[FacadeRef], targets_px: Mapping[Name, float]
+) -> tuple[FacadeRef, ...]:
+    """Make the facade nearest to a given x the one that its photo is a record of."""
+    nearest: dict[Name, FacadeRef] = {}
+    for ref in facades:
+        name = (ref.photo.root, ref.photo.name)
+        if name in targets_px:
+            x = targets_px[name]
+            best = nearest.setdefault(name, ref)
+            if abs(ref.seen.left_px - x) < abs(best.seen.left_px - x):
+                nearest[name] = ref
+
+    def directed(ref: FacadeRef) -> FacadeRef:
+        best = nearest.get((ref.photo.root, ref.photo.name))
+        if best is None:
+            return ref
+        target = ref.seen.facade == best.seen.facade
+        seen = replace(ref.seen, target=target, target_score=float(target))
+        return replace(ref, seen=seen)
+
+    return tuple(map(directed, facades))
 
 
 def order(ref: FacadeRef) -> tuple[str, str, int]:
@@ -144,7 +169,8 @@ def only(one: Placed, done: set[Texture]) -> Placed:
     before = one.settled
     kept = tuple(a for a in before.assignments if (a.photo, a.facade) in done)
     seen = tuple(ref.seen for ref in one.facades)
-    anew = block.raised(one.key, before.fronts, kept, seen)
+    known = dict(one.task.heights_m)
+    anew = block.raised(one.key, before.fronts, kept, seen, heights_m=known)
     return replace(one, settled=replace(before, assignments=kept, block=anew))
 
 

@@ -19,6 +19,7 @@ from pipelines import site
 from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
+from pipelines.build.corrected import directed, mended
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
 from pipelines.build.options import CityOptions, part
@@ -102,6 +103,7 @@ def made(
     schemes = [one for one in ours.allow_schemes.split(",") if one]
     found = manifest.rewrite(store, manifest.read(store))
     found = located(found, store.root, schemes)
+    found, made_so = mended(store, found)
     for warning in found.warnings:
         tell("warning", f"warning: {warning}", warning=warning)
     models = Models(ours.models) if ours.models else Models()
@@ -109,7 +111,7 @@ def made(
         models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
     bench = Bench(store, Versions.present(models), models, limits, ours.retry)
-    todo = plan(found.rows, city=ours.city, shard=shard)
+    todo = directed(plan(found.rows, city=ours.city, shard=shard), made_so)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):

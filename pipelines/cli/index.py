@@ -4,7 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, Quiet
 from pipelines.console import Voice, errors, fail, indexed, unwritable
 
 EXAMPLES: Final = """
@@ -43,6 +43,7 @@ def index_command(
         bool, typer.Option("--force", help="Replace a mended manifest; a copy is kept.")
     ] = False,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a city folder's manifest: which photo shows which fronts, in what order.
 
@@ -52,7 +53,7 @@ def index_command(
     from pipelines import index
     from pipelines.store import Busy, Store, held
 
-    voice = Voice(errors, machine=json_lines)
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
     named = {"credit": credit, "title": title}
     try:
         with held(Store(city)):

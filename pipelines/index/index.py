@@ -33,6 +33,7 @@ class Indexed:
     without_photo: int
     rejections: tuple[Rejection, ...]
     warnings: tuple[str, ...]
+    widths_assumed: int = 0  # of the fronts
 
     @property
     def astray(self) -> bool:
@@ -90,6 +91,7 @@ def index(
         blocks=len({front.block for front in fronts}),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
+        widths_assumed=sum(front.width_assumed for front in fronts),
         rejections=(
             *unnamed,
             *read.rejections,

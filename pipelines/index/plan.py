@@ -37,6 +37,8 @@ class BlockTask:
     credit: str
     # What is told of each photo: credit, rights, licence, date, where any is.
     told: tuple[tuple[Name, tuple[tuple[str, str], ...]], ...] = ()
+    heights_m: tuple[tuple[str, float], ...] = ()  # that are known, by building
+    targets_px: tuple[tuple[Name, float], ...] = ()  # x of the facade that is meant
 
     @property
     def key(self) -> str:
