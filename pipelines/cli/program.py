@@ -5,7 +5,7 @@ from typing import Annotated, Any, Final
 
 import typer
 
-from pipelines.cli import build, corrections, demo, explain, index, view
+from pipelines.cli import build, check, corrections, demo, explain, index, view
 from pipelines.console import echo, opened_streams
 from pipelines.evaluate import commands
 
@@ -46,6 +46,7 @@ def nostalgin(
 # In this order `--help` lists them.
 app.command("explain", epilog=explain.EXAMPLES)(explain.explain_command)
 app.command("index", epilog=index.EXAMPLES)(index.index_command)
+app.command("check", epilog=check.EXAMPLES)(check.check_command)
 app.command("corrections", epilog=corrections.EXAMPLES)(corrections.corrections_command)
 app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
     build.build_command
