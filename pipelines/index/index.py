@@ -84,7 +84,8 @@ def index(
         for photo, front in rows
     ]
     kept = [] if mended is None else [copied(store, *mended)]
-    manifest.write(store, cells, title=cleaned(title))
+    columns = {column for row in cells for column in row} - {*manifest.SCHEMA.names}
+    manifest.write(store, cells, title=cleaned(title), kept=columns)
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
         fronts=len(fronts),

@@ -9,6 +9,7 @@ are documented in `docs/manifest.md`; columns that are not known are kept.
 import contextlib
 import hashlib
 import io
+import json
 import time
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -28,6 +29,7 @@ PARQUET: Final = "manifest.parquet"
 CSV_HASH: Final = b"nostalgin.csv_sha256"
 TITLE: Final = b"nostalgin.title"
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
+KEPT: Final = b"nostalgin.kept"  # columns of a list that mean nothing here
 PHOTO: Final = pa.schema(
     [
         pa.field("root", pa.string()),  # folder that `photo` is relative to
@@ -59,6 +61,7 @@ class Manifest:
     sha256: str  # of what was read
     mended: bool = False  # the CSV was edited since it was written
     title: str = ""  # of the city; empty: its folder's name will do
+    kept: tuple[str, ...] = ()  # columns that `index` took from a list
 
 
 def row_of(
@@ -70,12 +73,20 @@ def row_of(
 
 
 def write(
-    store: Store, rows: list[dict[str, Any]], *, title: str = "", mended: bool = False
+    store: Store,
+    rows: list[dict[str, Any]],
+    *,
+    title: str = "",
+    mended: bool = False,
+    kept: Collection[str] = (),
 ) -> None:
-    """Write the manifest in both forms, in the order of block, ring, rank and photo."""
+    """Write the manifest in both forms, in the order of block, ring, rank and photo.
+
+    `kept` are columns of a list, which are remembered to be none of a slip's.
+    """
     known = SCHEMA.names
-    others = sorted({name for row in rows for name in row} - set(known))
-    ordered = sorted(rows, key=place)
+    others, ordered = {name for row in rows for name in row}, sorted(rows, key=place)
+    others = sorted(others.difference(known))
     text = comma.written([*known, *others], ordered).encode()
     extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
     table = pa.Table.from_pylist(ordered, extended)
@@ -84,6 +95,8 @@ def write(
         mark[TITLE] = title.encode()
     if mended:
         mark[MENDED] = b"yes"
+    if kept:
+        mark[KEPT] = json.dumps(sorted(kept)).encode()
     store.write_bytes(CSV, text)
     store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
 
@@ -98,7 +111,7 @@ def rewrite(store: Store, found: Manifest) -> Manifest:
     if not found.mended or found.rejections:
         return found
     rows = [typed(row) for row in found.rows]
-    write(store, rows, title=found.title, mended=True)
+    write(store, rows, title=found.title, mended=True, kept=found.kept)
     return read(store)
 
 
@@ -163,20 +176,23 @@ def read(store: Store) -> Manifest:
         Unusable: if there is none, or if what there is makes no sense.
     """
     mended, parquet = optional(store, CSV), optional(store, PARQUET)
-    title, ours = "", list[str]()
+    title, kept = "", tuple[str, ...]()
     if parquet is not None:
         table = parsed(parquet, store.root)
-        marks, ours = table.schema.metadata or {}, table.column_names
+        marks = table.schema.metadata or {}
         title = marks.get(TITLE, b"").decode(errors="replace")
+        with contextlib.suppress(ValueError):  # what is kept is warned of, then
+            kept = tuple(map(str, json.loads(marks.get(KEPT, b"[]"))))
         mark = marks.get(CSV_HASH, b"").decode(errors="replace")
         if mended is None or hashlib.sha256(mended).hexdigest() == mark:
-            rows = table.to_pylist()
-            found = checked(rows, ours, parquet, PARQUET, ours=ours)
+            found = checked(
+                table.to_pylist(), table.column_names, parquet, PARQUET, kept=kept
+            )
             return replace(found, title=title)
     if mended is None:
         raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    found = checked(rows, names, mended, CSV, ours=ours)
+    found = checked(rows, names, mended, CSV, kept=kept)
     return replace(found, mended=parquet is not None, title=title)
 
 
@@ -239,8 +255,8 @@ def decoded(file: pq.ParquetFile) -> pa.Table:
     if not batches:
         return file.read()
     columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
-    names, marks = file.schema_arrow.names, file.schema_arrow.metadata
-    return pa.Table.from_arrays(columns, names).replace_schema_metadata(marks)
+    table = pa.Table.from_arrays(columns, file.schema_arrow.names)
+    return table.replace_schema_metadata(file.schema_arrow.metadata)
 
 
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
@@ -257,12 +273,12 @@ def checked(
     data: bytes,
     name: str,
     *,
-    ours: Collection[str] = (),
+    kept: tuple[str, ...] = (),
 ) -> Manifest:
     """Check every row by itself, so that one bad row spoils no other.
 
-    Rows in which nothing is written are counted, and else ignored. `ours` are columns
-    that we have written ourselves: a list's are kept, and need no warning.
+    Rows in which nothing is written are counted, and else ignored. `kept` are columns
+    that `index` took from a list, of which it has warned.
     """
     missing = [one for one in REQUIRED if one not in names]
     if missing:
@@ -270,7 +286,7 @@ def checked(
             f"{name} lacks the columns {', '.join(missing)}: it has "
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
-    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD, *ours)]
+    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD, *kept)]
     warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
     results = [
         usable(number, row)
@@ -283,4 +299,5 @@ def checked(
         tuple(one for one in results if isinstance(one, Rejection)),
         (*warnings, *contradictions(rows)),
         hashlib.sha256(data).hexdigest(),
+        kept=kept,
     )
