@@ -50,8 +50,6 @@ def block(
 ) -> Block:
     """Build the cuboids of one block, ring by ring, in the order of its fronts.
 
-    `heights_m` are heights that are known, by building: no photograph is asked then.
-
     Raises:
         ValueError: if there are no fronts.
     """
@@ -64,11 +62,10 @@ def block(
     rings = [[front for front in fronts if front.ring == ring] for ring in numbers]
     placed = laid_out(list(zip(chained(rings), rings, strict=True)))
     footprints = _distinct([one for ring in placed for one in ring.footprints])
+    buildings = raised(footprints, shown, guessed, heights_m or {}, copied=copied)
     return Block(
         block=name,
-        buildings=tuple(
-            raised(footprints, shown, guessed, copied=copied, heights_m=heights_m or {})
-        ),
+        buildings=tuple(buildings),
         outline_m=tuple(ring.outline_m for ring in placed),
         closure_m=tuple(ring.closure_m for ring in placed),
     )
@@ -139,28 +136,27 @@ def with_seen_widths(
 def raised(
     footprints: Sequence[Footprint],
     shown: Mapping[str, Sequence[Shown]],
-    guessed: Collection[str] = (),
-    *,
-    copied: bool = False,
+    guessed: Collection[str],
     heights_m: Mapping[str, float],
+    *,
+    copied: bool,
 ) -> list[Building]:
     """Raise all buildings; those without a height get their neighbours' median."""
     known = [
-        heights.measured(heights_m[one.building_id], told(one, shown, guessed))
-        if one.building_id in heights_m
-        else heights.height(told(one, shown, guessed))
+        heights.height(told(one, shown, guessed), heights_m.get(one.building_id))
         for one in footprints
     ]
-    seen = [(i, one.height_m) for i, one in enumerate(known) if one is not None]
+    n, seen = (
+        len(known),
+        [(i, one.height_m) for i, one in enumerate(known) if one is not None],
+    )
 
     def neighbourly(index: int) -> float:
-        count = len(known)
         near = sorted(
             seen,
-            key=lambda one: min((one[0] - index) % count, (index - one[0]) % count),
+            key=lambda one: min((one[0] - index) % n, (index - one[0]) % n),
         )
-        found = [height_m for _, height_m in near[:NEIGHBOURS]]
-        return float(median(found)) if found else ASSUMED_M
+        return float(median(h for _, h in near[:NEIGHBOURS])) if near else ASSUMED_M
 
     return [
         cuboid(footprint, shown, one, assumed_m=neighbourly(index), copied=copied)

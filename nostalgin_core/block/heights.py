@@ -67,31 +67,29 @@ def belief(told: Sequence[Told]) -> Belief:
     return density(logs)
 
 
-def height(told: Sequence[Told]) -> Height | None:
-    """Tell a building's height, its interval and witnesses; None if nothing does."""
+def height(told: Sequence[Told], known_m: float | None = None) -> Height | None:
+    """Tell a building's height, its interval and witnesses; None if nothing does.
+
+    One that is known needs no witness; what they say of it stays told.
+    """
+    if not told and known_m is not None:
+        return Height(known_m, known_m, known_m, None, None, supported=True)
     if not told:
         return None
     of = belief(told)
     low_m, middle_m, high_m = quantiles(of, INTERVAL)
     best = max(told, key=lambda one: (one.shown.score, one.shown.texture))
     near = np.abs(HEIGHTS_M / middle_m - 1) <= NEAR
+    if known_m is not None:
+        low_m = middle_m = high_m = known_m
     return Height(
         height_m=middle_m,
         low_m=low_m,
         high_m=high_m,
         by_storeys_m=counted(best.shown),
         by_width_m=None if best.assumed else best.width_m / best.shown.aspect,
-        supported=bool(of[near].sum() >= LEAST_BELIEF),
+        supported=known_m is not None or bool(of[near].sum() >= LEAST_BELIEF),
     )
-
-
-def measured(height_m: float, told: Sequence[Told]) -> Height:
-    """Tell a height that somebody knows; what the elevations say of it stays told."""
-    seen = height(told)
-    by_storeys_m = seen.by_storeys_m if seen else None
-    by_width_m = seen.by_width_m if seen else None
-    known = (height_m, height_m, height_m)
-    return Height(*known, by_storeys_m, by_width_m, supported=True)
 
 
 def counted(one: Shown) -> float | None:

@@ -21,6 +21,7 @@ import pyarrow.parquet as pq
 from nostalgin_core.records import Front, Rejection
 from pipelines import bounded
 from pipelines.index import comma, told
+from pipelines.index.batches import decoded
 from pipelines.index.cells import text
 from pipelines.index.row import CSV, Row, contradictions, usable
 from pipelines.store import Store, parquet_bytes, tables
@@ -40,7 +41,6 @@ PHOTO: Final = pa.schema(
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
-BATCH: Final = 1000  # rows
 # Columns that a list may tell of a photograph; none stands where nothing is told.
 TOLD: Final = (*told.TOLD, told.AS_WRITTEN)
 DIGITS: Final = 9
@@ -235,28 +235,6 @@ def parsed(data: bytes, where: str) -> pa.Table:
             f"{CSV} will be read, or run `nostalgin index --force`"
         ) from problem
     return table
-
-
-def decoded(file: pq.ParquetFile) -> pa.Table:
-    """Read a table bit by bit: a long word that is repeated takes a file no bytes.
-
-    Raises:
-        OSError: if it has more bytes than are read.
-    """
-    batches, size = [], 0
-    for batch in file.iter_batches(BATCH):
-        plain = [
-            one.dictionary_decode() if pa.types.is_dictionary(one.type) else one
-            for one in batch.columns
-        ]
-        size += sum(one.nbytes for one in plain)
-        bounded.fits(size, bounded.TABLE_BYTES, "")
-        batches.append(plain)
-    if not batches:
-        return file.read()
-    columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
-    table = pa.Table.from_arrays(columns, file.schema_arrow.names)
-    return table.replace_schema_metadata(file.schema_arrow.metadata)
 
 
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
