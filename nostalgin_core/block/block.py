@@ -146,16 +146,11 @@ def raised(
         heights.height(told(one, shown, guessed), heights_m.get(one.building_id))
         for one in footprints
     ]
-    n, seen = (
-        len(known),
-        [(i, one.height_m) for i, one in enumerate(known) if one is not None],
-    )
+    seen = [(i, one.height_m) for i, one in enumerate(known) if one is not None]
+    n = len(known)
 
     def neighbourly(index: int) -> float:
-        near = sorted(
-            seen,
-            key=lambda one: min((one[0] - index) % n, (index - one[0]) % n),
-        )
+        near = sorted(seen, key=lambda x: min((x[0] - index) % n, (index - x[0]) % n))
         return float(median(h for _, h in near[:NEIGHBOURS])) if near else ASSUMED_M
 
     return [
