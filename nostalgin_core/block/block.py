@@ -46,6 +46,7 @@ def block(
     aspects: Aspects,
     *,
     copied: bool = False,
+    heights_m: Mapping[str, float] | None = None,
 ) -> Block:
     """Build the cuboids of one block, ring by ring, in the order of its fronts.
 
@@ -63,9 +64,12 @@ def block(
     ]
     placed = laid_out(list(zip(chained(rings), rings, strict=True)))
     footprints = _distinct([one for ring in placed for one in ring.footprints])
+    buildings = raised(
+        footprints, shown, guessed, heights_m or {}, fronts, copied=copied
+    )
     return Block(
         block=name,
-        buildings=tuple(raised(footprints, shown, guessed, fronts, copied=copied)),
+        buildings=tuple(buildings),
         outline_m=tuple(ring.outline_m for ring in placed),
         closure_m=tuple(ring.closure_m for ring in placed),
     )
@@ -136,24 +140,28 @@ def with_seen_widths(
 def raised(
     footprints: Sequence[Footprint],
     shown: Mapping[str, Sequence[Shown]],
-    guessed: Collection[str] = (),
+    guessed: Collection[str],
+    heights_m: Mapping[str, float],
     fronts: Sequence[Front] = (),
     *,
-    copied: bool = False,
+    copied: bool,
 ) -> list[Building]:
     """Raise all buildings; those without a height get their neighbours' median."""
     of = counts(fronts)
-    known = [heights.height(told(o, shown, guessed), listed(o, of)) for o in footprints]
+    known = [
+        heights.height(
+            told(one, shown, guessed),
+            listed(one, of),
+            heights_m.get(one.building_id),
+        )
+        for one in footprints
+    ]
     seen = [(i, one.height_m) for i, one in enumerate(known) if one is not None]
+    n = len(known)
 
     def neighbourly(index: int) -> float:
-        count = len(known)
-        near = sorted(
-            seen,
-            key=lambda one: min((one[0] - index) % count, (index - one[0]) % count),
-        )
-        found = [height_m for _, height_m in near[:NEIGHBOURS]]
-        return float(median(found)) if found else ASSUMED_M
+        near = sorted(seen, key=lambda x: min((x[0] - index) % n, (index - x[0]) % n))
+        return float(median(h for _, h in near[:NEIGHBOURS])) if near else ASSUMED_M
 
     return [
         cuboid(footprint, shown, one, assumed_m=neighbourly(index), copied=copied)

@@ -74,24 +74,35 @@ def belief(told: Sequence[Told], listed: float | None = None) -> Belief:
     return density(logs)
 
 
-def height(told: Sequence[Told], listed: float | None = None) -> Height | None:
-    """Tell a building's height, its interval and witnesses; None if nothing does."""
+def height(
+    told: Sequence[Told], listed: float | None = None, known_m: float | None = None
+) -> Height | None:
+    """Tell a building's height, its interval and witnesses; None if nothing does.
+
+    One that is known needs no witness; what they say of it stays told.
+    """
+    if not told and listed is None and known_m is not None:
+        return Height(known_m, known_m, known_m, None, None, supported=True)
     if not told and listed is None:
         return None
     of = belief(told, listed)
     low_m, middle_m, high_m = quantiles(of, INTERVAL)
     near = np.abs(HEIGHTS_M / middle_m - 1) <= NEAR
     said = witnesses(told, listed)
+    if known_m is not None:
+        low_m = middle_m = high_m = known_m
     return Height(
         height_m=middle_m,
         low_m=low_m,
         high_m=high_m,
         by_storeys_m=said.get(STOREYS),
         by_width_m=said.get(WIDTH),
-        supported=bool(of[near].sum() >= LEAST_BELIEF),
+        supported=known_m is not None or bool(of[near].sum() >= LEAST_BELIEF),
         by_list_m=said.get(LIST),
         contradicting=tuple(
-            name for name, at_m in said.items() if not low_m <= at_m <= high_m
+            name
+            for name, at_m in said.items()
+            if known_m is None and not low_m <= at_m <= high_m
         ),
     )
 

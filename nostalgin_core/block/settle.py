@@ -49,19 +49,21 @@ def settle(
     fronts: Sequence[Front],
     candidates: Mapping[str, Sequence[str]],
     seen: Sequence[Seen],
+    *,
+    heights_m: Mapping[str, float] | None = None,
 ) -> Settled:
     """Give a block's facades to its fronts, and raise its buildings.
 
-    `candidates` names for each photo, by key, the fronts that it may show.
+    `candidates` names for each photo, by key, the fronts that it may show; `heights_m`
+    are heights that are known, by building.
     """
     two = assign.two_fronted(fronts, candidates, seen)
     turned = corner.with_corners(fronts, two)
     outcomes = assign.assign(turned, candidates, seen)
     assignments = tuple(one for one in outcomes if isinstance(one, Assignment))
     rejections = tuple(one for one in outcomes if isinstance(one, Rejection))
-    return Settled(
-        turned, assignments, rejections, raised(name, turned, assignments, seen)
-    )
+    stands = raised(name, turned, assignments, seen, heights_m=heights_m)
+    return Settled(turned, assignments, rejections, stands)
 
 
 def raised(
@@ -69,6 +71,8 @@ def raised(
     fronts: Sequence[Front],
     assignments: Sequence[Assignment],
     seen: Sequence[Seen],
+    *,
+    heights_m: Mapping[str, float] | None = None,
 ) -> Block:
     """Raise a block's buildings from the proportions of the facades they wear."""
     aspects = {
@@ -80,4 +84,4 @@ def raised(
         }
         for one in seen
     }
-    return block.block(name, fronts, assignments, aspects)
+    return block.block(name, fronts, assignments, aspects, heights_m=heights_m)

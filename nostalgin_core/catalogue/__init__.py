@@ -4,7 +4,13 @@ In: rows of cells. Out: entries, then `Front`s with ring, side and rank.
 Paper: section 3.5 takes this order as given. Open `catalogue` first, then `rings`.
 """
 
-from nostalgin_core.catalogue.catalogue import Catalogue, matched, read
+from nostalgin_core.catalogue.catalogue import (
+    Catalogue,
+    matched,
+    plain,
+    read,
+    unknown,
+)
 from nostalgin_core.catalogue.entry import Entry, from_file_name, inside
 from nostalgin_core.catalogue.rings import fronts
 
@@ -15,5 +21,7 @@ __all__ = [
     "fronts",
     "inside",
     "matched",
+    "plain",
     "read",
+    "unknown",
 ]

@@ -53,18 +53,22 @@ ALIASES: Final[Mapping[str, tuple[str, ...]]] = {
     "storeys": ("storeys", "stories", "floors", "number_of_floors", "numfloors"),
     "built": ("year_built",),
     "taken": ("date", "taken"),
-    "source": ("source", "source_url", "record_url"),
 }
 UNUSED: Final = frozenset(  # the archive's columns that say nothing about place or size
     {
         *("delete", "borough", "qc", "flagged", "notes", "landmark", "roll_number"),
         *("alternative_block_number", "alternative_lot_number", "zip_code"),
         *("complete_address", "condition_hole_punch_deteriorated_tape"),
-        *("year_altered1", "year_altered2", "rights"),
+        *("year_altered1", "year_altered2"),
+        # They say nothing about place or size, but are told of each photograph.
+        *("rights", "rights_statement", "usage_rights", "copyright"),
+        *("license", "licence", "rights_uri"),
+        *("source_url", "source", "record_url", "url", "homepage"),
     }
 )
 FIRST_ROW: Final = 2
 QUOTED: Final = 80  # letters
+NAMED: Final = 8  # blocks of a list
 LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
 
 
@@ -78,7 +82,10 @@ class Catalogue:
 
 
 def read(
-    rows: Iterable[Mapping[str, str | None]], *, name: str = "catalogue"
+    rows: Iterable[Mapping[str, str | None]],
+    *,
+    name: str = "catalogue",
+    first: int = FIRST_ROW,
 ) -> Catalogue:
     """Read the rows of a catalogue, each by itself; empty ones are only counted.
 
@@ -86,14 +93,14 @@ def read(
     """
     given: list[dict[Any, Any]] = [dict(row) for row in rows]
     listed = [{key: cell for key, cell in row.items() if key} for row in given]
-    columns = _columns(listed)
+    every = list(dict.fromkeys(key for row in listed for key in row))
+    columns = _columns(every)
     warnings = [
         f"{name}: column {_shown(column)} is not known; it is kept"
-        for column in dict.fromkeys(key for row in listed for key in row)
-        if column not in columns.values() and _plain(column) not in UNUSED
+        for column in unknown(every)
     ]
     entries, rejections = [], []
-    for number, (row, whole) in enumerate(zip(listed, given, strict=True), FIRST_ROW):
+    for number, (row, whole) in enumerate(zip(listed, given, strict=True), first):
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
         if cells.get("photo"):
             cells["photo"] = str(row[columns["photo"]])  # blanks may be of its name
@@ -112,6 +119,13 @@ def read(
         entries += [entry, *round_the_corner(entry, cells)]
         warnings += [f"{name} row {number}: {doubt}" for doubt in doubts]
     return Catalogue(tuple(entries), tuple(rejections), tuple(warnings))
+
+
+def unknown(columns: Iterable[str]) -> list[str]:
+    """List the columns that mean nothing here."""
+    names = list(columns)
+    used = _columns(names).values()
+    return [one for one in names if one not in used and plain(one) not in UNUSED]
 
 
 def matched(
@@ -137,6 +151,9 @@ def matched(
             by_name[PurePosixPath(where).name].append(entry)
         by_lot[entry.block, entry.lot].append(entry)
     found, rejections = {}, []
+    known = {entry.block for entry in entries}
+    blocks = sorted(known, key=lambda one: (len(one), one))
+    shown = ", ".join(blocks[:NAMED]) + (" ..." if len(blocks) > NAMED else "")
     for photo in photos:
         lot = from_file_name(photo)
         where = _path(photo)
@@ -144,6 +161,10 @@ def matched(
         rows = rows or (by_lot.get(lot) if lot else None)
         if rows:
             found[photo] = tuple(rows)
+        elif lot and lot[0] not in known:
+            why = "its block is not on the list"
+            detail = f"it has {shown[:QUOTED]}; is it another's list?"
+            rejections.append(Rejection(photo, "catalogue", why, detail))
         else:
             detail = "add a row with its name, block and lot to the catalogue"
             rejections.append(
@@ -152,9 +173,9 @@ def matched(
     return found, tuple(rejections)
 
 
-def _columns(rows: Sequence[Mapping[str, str | None]]) -> dict[str, str]:
+def _columns(columns: Iterable[str]) -> dict[str, str]:
     """Tell which column holds which field; of several names the first listed wins."""
-    names = {_plain(name): name for row in rows for name in row}
+    names = {plain(name): name for name in columns}
     fields = {}
     for field, aliases in ALIASES.items():
         known = [names[alias] for alias in aliases if alias in names]
@@ -198,7 +219,7 @@ def _shown(words: object) -> str:
     return repr(text if len(text) <= QUOTED else f"{text[:QUOTED]}...")
 
 
-def _plain(column: object) -> str:
+def plain(column: object) -> str:
     """Write a column's name in small letters, one underscore between its words."""
     return re.sub(r"[^a-z0-9]+", "_", str(column).casefold()).strip("_")
 

@@ -39,9 +39,7 @@ class Entry:
     side: int | None
     order: float | None
     credit: str
-    taken: str  # the year or date of the photo, as it is written
     built: str  # the year of the building
-    source: str  # the address of the archive's own record
     storeys: float | None = None  # of the building, as the list counts them
 
 
@@ -79,9 +77,7 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         side=side,
         order=order,
         credit=cells.get("credit", ""),
-        taken=cells.get("taken", ""),
         built="" if later else cells.get("built", ""),
-        source=cells.get("source", ""),
         storeys=storeys,
     )
     return made, doubts + more + odd

@@ -1,6 +1,7 @@
 """Whose photographs a model shows, and what may be done with it: told in every file."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 UNSTATED: Final = "not stated"
@@ -13,6 +14,8 @@ class Rights:
     credit: str = ""
     licence: str = ""  # its name, or its address
     sources: tuple[str, ...] = ()  # addresses of the archive's records
+    # What is told of each photograph that is worn, by key: rights, licence, date...
+    photographs: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def line(self) -> str:
@@ -26,6 +29,7 @@ class Rights:
             "credit": self.credit or UNSTATED,
             "licence": self._licence,
             "sources": list(self.sources),
+            **({"photographs": self.photographs} if self.photographs else {}),
         }
 
     @property

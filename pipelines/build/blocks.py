@@ -2,8 +2,8 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any, Final
 
@@ -16,7 +16,7 @@ from nostalgin_core.block import Settled
 from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
 from pipelines.build.bench import Bench
 from pipelines.build.stages import FacadeRef, inpainted, named
-from pipelines.index.plan import BlockTask
+from pipelines.index.plan import BlockTask, Name
 from pipelines.store import tables
 
 MODEL: Final = pa.schema(
@@ -109,7 +109,7 @@ def placed(
     del bench  # numbers alone: nothing is read or kept
     _, parts = grouped
     (task,) = parts["task"]
-    facades = tuple(sorted(parts["facades"], key=order))
+    facades = meant(sorted(parts["facades"], key=order), dict(task.targets_px))
     names = {ref.seen.photo: ref.photo.name for ref in reversed(facades)}
     keys = {(ref.photo.root, ref.photo.name): ref.seen.photo for ref in facades}
     candidates: dict[str, list[str]] = {}
@@ -117,9 +117,34 @@ def placed(
         if photo in keys:
             candidates.setdefault(keys[photo], []).append(front_id)
     seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
-    settled = block.settle(task.block, task.fronts, candidates, seen)
+    known = dict(task.heights_m)
+    settled = block.settle(task.block, task.fronts, candidates, seen, heights_m=known)
     rejections = [named(one, names[one.key]) for one in settled.rejections]
     return [Placed(task, facades, settled), *rejections]
+
+
+def meant(
+    facades: Sequence[FacadeRef], targets_px: Mapping[Name, float]
+) -> tuple[FacadeRef, ...]:
+    """Make the facade nearest to a given x the one that its photo is a record of."""
+    nearest: dict[Name, FacadeRef] = {}
+    for ref in facades:
+        name = (ref.photo.root, ref.photo.name)
+        if name in targets_px:
+            x = targets_px[name]
+            best = nearest.setdefault(name, ref)
+            if abs(ref.seen.left_px - x) < abs(best.seen.left_px - x):
+                nearest[name] = ref
+
+    def directed(ref: FacadeRef) -> FacadeRef:
+        best = nearest.get((ref.photo.root, ref.photo.name))
+        if best is None:
+            return ref
+        target = ref.seen.facade == best.seen.facade
+        seen = replace(ref.seen, target=target, target_score=float(target))
+        return replace(ref, seen=seen)
+
+    return tuple(map(directed, facades))
 
 
 def order(ref: FacadeRef) -> tuple[str, str, int]:
@@ -151,7 +176,8 @@ def only(one: Placed, done: set[Texture]) -> Placed:
     before = one.settled
     kept = tuple(a for a in before.assignments if (a.photo, a.facade) in done)
     seen = tuple(ref.seen for ref in one.facades)
-    anew = block.raised(one.key, before.fronts, kept, seen)
+    known = dict(one.task.heights_m)
+    anew = block.raised(one.key, before.fronts, kept, seen, heights_m=known)
     return replace(one, settled=replace(before, assignments=kept, block=anew))
 
 
@@ -167,9 +193,18 @@ def contents(one: Placed, bench: Bench) -> list[str]:
     ]
     return [
         json.dumps([one.key, one.task.credit, buildings, model.table(one.settled)]),
-        json.dumps([bench.image_format, one.task.licence, one.task.sources]),
+        json.dumps([bench.image_format, asdict(rights(one))]),
         *finished,
     ]
+
+
+def rights(one: Placed) -> model.Rights:
+    """Tell whose the photographs are that a block's walls wear."""
+    task, told = one.task, dict(one.task.told)
+    photos = {ref.seen.photo: ref.photo for ref in one.worn()}
+    names = {key: (ref.root, ref.name) for key, ref in sorted(photos.items())}
+    worn = {key: dict(told[name]) for key, name in names.items() if name in told}
+    return model.Rights(task.credit, task.licence, task.sources, worn)
 
 
 def walls(building: Building) -> list[dict[str, Any]]:
@@ -180,10 +215,8 @@ def walls(building: Building) -> list[dict[str, Any]]:
 def glb(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
     views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
-    task = one.task
-    rights = model.Rights(task.credit, task.licence, task.sources)
     made = model.model(
-        one.settled, views, rights=rights, image_format=bench.image_format
+        one.settled, views, rights=rights(one), image_format=bench.image_format
     )
     row = {
         "block": one.key,

@@ -19,6 +19,7 @@ from pipelines import index, site
 from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
+from pipelines.build.corrected import directed, mended
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
 from pipelines.build.options import CityOptions, part
@@ -102,6 +103,7 @@ def made(
     schemes = [one for one in ours.allow_schemes.split(",") if one]
     found = manifest.rewrite(store, manifest.read(store))
     found = located(found, store.root, schemes)
+    found, made_so = mended(store, found)
     names = {row.front.block for row in found.rows if row.front is not None}
     anchors = index.load(store, sorted(names, key=manifest.natural))
     for warning in (*found.warnings, *anchors.warnings):
@@ -112,7 +114,7 @@ def made(
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
     form = "png" if ours.no_webp else "webp"
     bench = Bench(store, Versions.present(models), models, limits, ours.retry, form)
-    todo = plan(found.rows, city=ours.city, shard=shard)
+    todo = directed(plan(found.rows, city=ours.city, shard=shard), made_so)
     if shard == (1, 1) and not todo.blocks:
         raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):

@@ -30,6 +30,9 @@ class Report:
     rejections: tuple[dict[str, Any], ...]
     healed: int = 0  # artifacts that were damaged and made again
     held: bool = False  # a better site was not replaced
+    fronts: int = 0
+    widths_assumed: int = 0  # of the fronts: no list gave them
+    heights_assumed: int = 0  # of the buildings: nothing supports them
 
     @property
     def rejected_share(self) -> float:
@@ -74,6 +77,8 @@ def reported(store: Store, run: str, todo: Plan) -> Report:
     facades = runs.read_column(store, run, "facades", "name")
     seen = set(facades)
     buildings = runs.read_column(store, run, "blocks", "buildings")
+    fronts = [front for task in todo.blocks for front in task.fronts]
+    supported = runs.read_column(store, run, "buildings", "height_supported")
     return Report(
         run=run,
         photos=len(todo.photos),
@@ -83,6 +88,9 @@ def reported(store: Store, run: str, todo: Plan) -> Report:
         buildings=sum(buildings),
         assumed=sum(runs.read_column(store, run, "blocks", "assumed")),
         rejections=tuple(runs.read_table(store, run, "rejections")),
+        fronts=len(fronts),
+        widths_assumed=sum(front.width_assumed for front in fronts),
+        heights_assumed=sum(not one for one in supported),
     )
 
 

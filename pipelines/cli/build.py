@@ -4,7 +4,13 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, ModelsFolder, built
+from pipelines.cli.launch import (
+    TOO_MANY_REJECTIONS,
+    JsonLines,
+    ModelsFolder,
+    Quiet,
+    built,
+)
 from pipelines.console import Voice, errors
 
 EXAMPLES: Final = """
@@ -56,13 +62,14 @@ def build_command(
         float, typer.Option("--stage-gigabytes", min=0.5, help="And its memory.")
     ] = 4.0,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Build the city: every photo through every stage, one model a block, the site.
 
     What was done before is found and kept, so a run that was stopped goes on where it
     was. All other options go to Beam.
     """
-    voice = Voice(errors, machine=json_lines)
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
     asked = {"models": str(models or ""), "shard": shard, "schemes": allow_scheme or ()}
     limits = [f"--stage_seconds={seconds}", f"--stage_gigabytes={gigabytes}"]
     flags = ["--retry"] * retry + ["--publish_anyway"] * publish_anyway

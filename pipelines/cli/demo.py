@@ -7,7 +7,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import JsonLines, built, told
+from pipelines.cli.launch import JsonLines, Quiet, built, told
 from pipelines.console import Voice, errors, unwritable
 
 MOST_WORKERS: Final = 4  # each holds both networks
@@ -30,6 +30,7 @@ def demo_command(
     blocks: Annotated[int, typer.Option(min=1, max=3, help="How many blocks.")] = 2,
     browser: Annotated[bool, typer.Option(help="Open a browser at the end.")] = True,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Paint a neighbourhood, photograph it, rebuild it from the photos, and show it.
 
@@ -43,7 +44,7 @@ def demo_command(
     from pipelines.demo import CREDIT, TITLE, painted
     from pipelines.view import view
 
-    voice = Voice(errors, machine=json_lines)
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
 
     def tell(done: int, whole: int) -> None:
         if done % 10 == 0 or done == whole:

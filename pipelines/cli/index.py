@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, Quiet
 from pipelines.console import Voice, errors, fail, indexed, unwritable
 
 EXAMPLES: Final = """
@@ -20,15 +20,20 @@ Examples:
   nostalgin index photos -o city --title "Midtown, 1940"
 
   nostalgin index photos --catalogue list.csv -o city --outlines footprints.geojson
+
+  nostalgin index https://iiif.example.org/street/manifest.json -o city
 """
 
 
 def index_command(
-    photos: Annotated[Path, typer.Argument(help="The folder that holds the photos.")],
+    photos: Annotated[
+        str, typer.Argument(help="The folder of the photos, or a IIIF manifest.")
+    ],
     city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
     *,
     catalogue: Annotated[
-        Path | None, typer.Option(help="CSV with block, lot, street, address, width.")
+        str | None,
+        typer.Option(help="A list with block, lot, street...: CSV, JSON or IIIF."),
     ] = None,
     block: Annotated[
         list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
@@ -60,6 +65,7 @@ def index_command(
         Path | None, typer.Option(help="CSV with street and width_m.")
     ] = None,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a city folder's manifest: which photo shows which fronts, in what order.
 
@@ -69,7 +75,7 @@ def index_command(
     from pipelines import index
     from pipelines.store import Busy, Store, held
 
-    voice = Voice(errors, machine=json_lines)
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
     named = {"credit": credit, "title": title}
     told = index.Asked(outlines, outline_key, outline_crs, places, place, streets)
     try:
@@ -81,6 +87,7 @@ def index_command(
                 blocks=block or (),
                 force=force,
                 places=told,
+                tell=voice.say,
                 **named,
             )
     except (index.Nothing, Busy) as problem:

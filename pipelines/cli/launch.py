@@ -24,6 +24,9 @@ ModelsFolder = Annotated[
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
 ]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Tell nothing but what went wrong.")
+]
 
 
 def told(

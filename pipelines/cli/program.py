@@ -1,11 +1,23 @@
 """The program `nostalgin`: its commands, and where they begin."""
 
-from typing import Any, Final
+from importlib.metadata import version
+from typing import Annotated, Any, Final
 
 import typer
 
-from pipelines.cli import build, demo, explain, export, index, publish, report, view
-from pipelines.console import opened_streams
+from pipelines.cli import (
+    build,
+    check,
+    corrections,
+    demo,
+    explain,
+    export,
+    index,
+    publish,
+    report,
+    view,
+)
+from pipelines.console import echo, opened_streams
 from pipelines.evaluate import commands
 
 TO_BEAM: Final[dict[str, Any]] = {
@@ -17,20 +29,36 @@ app = typer.Typer(
     name="nostalgin",
     help="Turn historical street photographs into a city to walk through.",
     no_args_is_help=True,
-    add_completion=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
 
 
+def told_version(wanted: bool) -> None:  # noqa: FBT001 - typer's callback
+    """Tell the version, and end."""
+    if wanted:
+        echo(f"nostalgin {version('nostalgin')}")
+        raise typer.Exit
+
+
 @app.callback()
-def nostalgin() -> None:
+def nostalgin(
+    *,
+    wanted: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=told_version, is_eager=True, help="Tell the version."
+        ),
+    ] = False,
+) -> None:
     """Turn historical street photographs into a city to walk through."""
 
 
 # In this order `--help` lists them.
 app.command("explain", epilog=explain.EXAMPLES)(explain.explain_command)
 app.command("index", epilog=index.EXAMPLES)(index.index_command)
+app.command("check", epilog=check.EXAMPLES)(check.check_command)
+app.command("corrections", epilog=corrections.EXAMPLES)(corrections.corrections_command)
 app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
     build.build_command
 )

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,19 +15,25 @@ if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.index import Indexed
 
 MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
+MOST_NAMES: Final = 3  # of those that were rejected alike
+GRAVE: Final = frozenset(("homeless", "held"))  # which the exit code tells, too
 
 
 @dataclass
 class Voice:
-    """Tells people in lines, or machines in JSON, a line an event."""
+    """Tells people in lines, or machines in JSON, a line an event.
+
+    A quiet one tells only what ends a command with another code than 0.
+    """
 
     console: Console
     machine: bool = False
+    quiet: bool = False
     lost: bool = False  # where it speaks, nobody listens any more
 
     def say(self, event: str, text: str, **facts: Any) -> None:
         """Tell one event; if nobody can hear it any more, the work goes on."""
-        if self.lost:
+        if self.lost or (self.quiet and event not in GRAVE):
             return
         try:
             if self.machine:
@@ -41,12 +48,32 @@ class Voice:
                 fail(f"standard output: {why}; the work goes on, but untold")
 
 
+def told_rejections(rejections: Sequence[Mapping[str, Any]], voice: Voice) -> None:
+    """Tell why things were rejected: people are told alike ones in one line."""
+    if voice.machine:
+        for one in rejections:
+            voice.say("rejected", "", **one)
+        return
+    alike: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
+    for one in rejections:  # what names itself in its detail is alike but for its name
+        key = one["key"]
+        detail = one["detail"].replace(key, "it") if key else one["detail"]
+        alike.setdefault((one.get("stage", ""), one["reason"], detail), []).append(one)
+    for (stage, reason, detail), some in list(alike.items())[:MOST_LINES]:
+        names = ", ".join(one["key"] for one in some[:MOST_NAMES])
+        if len(some) > MOST_NAMES:
+            names = f"{len(some)} ({names} ...)"
+        words = some[0]["detail"] if len(some) == 1 else detail
+        why = ": ".join(filter(None, (stage, reason, words)))
+        voice.say("rejected", f"rejected {names}: {why}")
+    if len(alike) > MOST_LINES:
+        words = f"and for {len(alike) - MOST_LINES} other reasons; --json tells all"
+        voice.say("rejected", words)
+
+
 def summed(report: "Report", voice: Voice) -> None:
     """Tell what came of a build."""
-    shown = report.rejections if voice.machine else report.grave()[:MOST_LINES]
-    for one in shown:
-        words = f"{one['key']}: {one['stage']}: {one['reason']}: {one['detail']}"
-        voice.say("rejected", f"rejected {words}", **one)
+    told_rejections(report.rejections if voice.machine else report.grave(), voice)
     for reason, count in () if voice.machine else report.reasons():
         voice.say("reason", f"{count} times rejected by {reason}")
     if report.healed:
@@ -56,7 +83,9 @@ def summed(report: "Report", voice: Voice) -> None:
         "done",
         f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
         f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
-        f"{report.buildings} buildings, {report.assumed} of them assumed; all "
+        f"{report.buildings} buildings, {report.assumed} of them assumed; "
+        f"{report.widths_assumed} of {report.fronts} widths and "
+        f"{report.heights_assumed} of {report.buildings} heights are assumed; all "
         f"rejections are in runs/{report.run}/rejections.parquet",
         run=report.run,
         photos=report.photos,
@@ -65,6 +94,9 @@ def summed(report: "Report", voice: Voice) -> None:
         blocks=report.blocks,
         buildings=report.buildings,
         assumed=report.assumed,
+        fronts=report.fronts,
+        widths_assumed=report.widths_assumed,
+        heights_assumed=report.heights_assumed,
         reasons=dict(report.reasons()),
     )
 
@@ -73,17 +105,19 @@ def indexed(made: "Indexed", city: str, voice: Voice) -> None:
     """Tell what came of an index."""
     for warning in made.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
-    for one in made.rejections:
-        words = f"rejected {one.key}: {one.reason}: {one.detail}"
-        voice.say("rejected", words, key=one.key, reason=one.reason, detail=one.detail)
+    facts = ("key", "reason", "detail")
+    named = [{name: getattr(r, name) for name in facts} for r in made.rejections]
+    told_rejections(named, voice)
     voice.say(
         "done",
         f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
-        f"{made.without_photo} fronts without a photo: {city}/manifest.csv",
+        f"{made.without_photo} fronts without a photo, {made.widths_assumed} widths "
+        f"assumed: {city}/manifest.csv",
         photos=made.photos,
         fronts=made.fronts,
         blocks=made.blocks,
         fronts_without_photo=made.without_photo,
+        widths_assumed=made.widths_assumed,
         photos_without_front=list(made.without_front),
     )
     if made.astray:

@@ -1,29 +1,26 @@
 """From a folder of photos and a catalogue to the manifest of a city."""
 
-import hashlib
 import os
 import re
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from nostalgin_core import catalogue
-from nostalgin_core.catalogue import Catalogue, Entry, from_file_name
+from nostalgin_core.catalogue import Catalogue, Entry
 from nostalgin_core.records import Front, Rejection
-from pipelines import bounded
-from pipelines.index import comma, manifest
+from pipelines.index import lists, manifest
 from pipelines.index.anchors import Asked, taken
 from pipelines.index.cells import MOST_FRONTS
 from pipelines.index.images import Nothing, images, spelt_out
+from pipelines.index.names import block_and_lot, row_name
 from pipelines.index.title import cleaned
+from pipelines.index.told import Told, told
 from pipelines.store import Store, textual
 
-LONGEST: Final = 48  # letters of a folder that names a block
-# 993_8a, 993-8, block 993 lot 8: the two numbers at the end, with a view's letter
 MOST_HOMELESS: Final = 0.5  # of the photos
-BLOCK_AND_LOT: Final = re.compile(r"(?:^|\D)(\d{1,5})\D{1,7}?(\d{1,4})[a-z]?$")
 
 
 @dataclass(frozen=True)
@@ -37,6 +34,7 @@ class Indexed:
     without_photo: int
     rejections: tuple[Rejection, ...]
     warnings: tuple[str, ...]
+    widths_assumed: int = 0  # of the fronts
 
     @property
     def astray(self) -> bool:
@@ -45,8 +43,8 @@ class Indexed:
 
 
 def index(
-    photos: Path,
-    listed: Path | None,
+    photos: str | Path,
+    listed: str | Path | None,
     city: str,
     *,
     blocks: Sequence[str] = (),
@@ -54,9 +52,11 @@ def index(
     title: str = "",
     force: bool = False,
     places: Asked | None = None,
+    tell: lists.Tell = lists.silent,
 ) -> Indexed:
     """Write a city folder's manifest; without a `title` its folder's name is shown.
 
+    `photos` is a folder, or a IIIF source, which is brought into the city folder.
     Without a catalogue the file names tell block and lot; where they don't, the photos
     of a folder stand in one row, in the order of their names. A manifest that people
     have mended is replaced by `force` alone, and a copy of it is kept. What an earlier
@@ -70,25 +70,29 @@ def index(
         raise Nothing(f"--credit {spelt_out(credit)} is not UTF-8: write it anew")
     store = Store(city)
     mended = replaceable(store, force=force)
-    names, unnamed = images(photos, city)
-    read = from_names(names, photos) if listed is None else from_csv(listed)
+    folder, given = lists.opened(photos, listed, city, tell=tell)
+    names, unnamed = images(folder, city)
+    read = from_names(names, folder) if given is None else from_list(given)
+    beside = told_by(given, read.entries)
     entries, crowded = sparse(read.entries)
-    wanted = of_blocks(entries, blocks, crowded, where=listed or photos)
+    wanted = of_blocks(entries, blocks, crowded, where=Path(listed or photos))
     fronts, doubts = catalogue.fronts(wanted)
     named = {front.block for front in fronts}
     files, placeless = taken(places or Asked(), sorted(named, key=manifest.natural))
     shown, strangers = catalogue.matched(entries, names)
     rows, homeless = paired(names, shown, fronts, every=not blocks)
-    root = os.path.abspath(photos)  # noqa: PTH100 - a link stays a link
+    root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
     credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
-    more = told(entries, shown)
+    year = years(entries)
     cells = [
         manifest.row_of(photo, front, root=root, credit=credits_of.get(photo, credit))
-        | more(photo, front)
+        | beside.of(photo, shown.get(photo, ()), front)
+        | year(front)
         for photo, front in rows
     ]
     kept = [] if mended is None else [copied(store, *mended)]
-    manifest.write(store, cells, title=cleaned(title))
+    columns = {column for row in cells for column in row} - {*manifest.SCHEMA.names}
+    manifest.write(store, cells, title=cleaned(title), kept=columns)
     for name, data in files.items():
         store.write_bytes(name, data)
     return Indexed(
@@ -97,6 +101,7 @@ def index(
         blocks=len(named),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
+        widths_assumed=sum(front.width_assumed for front in fronts),
         rejections=(
             *unnamed,
             *read.rejections,
@@ -105,6 +110,7 @@ def index(
         ),
         warnings=(
             *about(read.warnings, {e.row for e in wanted}),
+            *beside.warnings,
             *doubts,
             *placeless,
             *kept,
@@ -180,29 +186,13 @@ def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
     return [text for row, text in named if row is None or int(row[1]) in rows]
 
 
-def told(
-    entries: Sequence[Entry], shown: Mapping[str, Sequence[Entry]]
-) -> Callable[[str, Front | None], dict[str, str]]:
-    """Tell what a list says beside place and size: columns that some row fills.
-
-    `date` and `source` are a photo's, `year` is a building's.
-    """
+def years(entries: Sequence[Entry]) -> Callable[[Front | None], dict[str, str]]:
+    """Tell when a front's building was built, where a list tells that of any."""
     built = {(one.block, one.lot): one.built for one in reversed(entries) if one.built}
-    some = {
-        "date": any(one.taken for one in entries),
-        "source": any(one.source for one in entries),
-        "year": bool(built),
-    }
 
-    def of(photo: str, front: Front | None) -> dict[str, str]:
-        own = shown.get(photo, ())
+    def of(front: Front | None) -> dict[str, str]:
         lot = (front.block, front.lot) if front else ("", "")
-        cells = {
-            "date": next((one.taken for one in own if one.taken), ""),
-            "source": next((one.source for one in own if one.source), ""),
-            "year": built.get(lot, ""),
-        }
-        return {name: cell for name, cell in cells.items() if some[name]}
+        return {"year": built.get(lot, "")} if built else {}
 
     return of
 
@@ -212,20 +202,22 @@ def first_credit(entries: Sequence[Entry]) -> str:
     return next((entry.credit for entry in entries if entry.credit), "")
 
 
-def from_csv(path: Path) -> Catalogue:
-    """Read a catalogue.
+def from_list(listed: lists.Listing) -> Catalogue:
+    """Read a list.
 
     Raises:
-        Nothing: if it can't be read, or no row of it makes sense.
+        Nothing: if no row of it makes sense.
     """
-    try:
-        _, rows = comma.parsed(bounded.read(path, bounded.TABLE_BYTES))
-    except OSError as problem:
-        raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
-    except comma.NoTable as problem:
-        raise Nothing(f"{path} {problem}") from problem
-    read = catalogue.read(rows, name=path.name)
-    return useful(read, path)
+    return useful(listed.read(), Path(listed.name))
+
+
+def told_by(listed: lists.Listing | None, entries: Sequence[Entry]) -> Told:
+    """Gather what a list tells of photographs beside their place."""
+    if listed is None:
+        return Told({}, {})
+    reserved, beside = manifest.SCHEMA.names, listed.beside
+    named = {"name": listed.name, "first": listed.first, "beside": beside}
+    return told(listed.rows, entries, reserved=reserved, **named)
 
 
 def useful(read: Catalogue, path: Path) -> Catalogue:
@@ -254,22 +246,6 @@ def from_names(names: Sequence[str], folder: Path) -> Catalogue:
         block, lot = told[name] or row
         rows.append({"photo": name, "block": block, "lot": lot})
     return useful(catalogue.read(rows, name="file names"), folder)
-
-
-def row_name(folder: str) -> str:
-    """Call a row of photos after its folder; a name that is no block's is replaced."""
-    if len(folder) <= LONGEST and not set(folder) & set("/\\\0") and folder.strip():
-        return folder
-    return f"row {hashlib.sha256(os.fsencode(folder)).hexdigest()[:12]}"
-
-
-def block_and_lot(name: str) -> tuple[str, str] | None:
-    """Read block and lot from a file name, if it tells both."""
-    exact = from_file_name(name)
-    if exact is not None:
-        return exact
-    found = BLOCK_AND_LOT.search(Path(name).stem.strip().casefold())
-    return (str(int(found[1])), str(int(found[2]))) if found else None
 
 
 def paired(

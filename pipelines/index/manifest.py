@@ -9,7 +9,9 @@ are documented in `docs/manifest.md`; columns that are not known are kept.
 import contextlib
 import hashlib
 import io
+import json
 import time
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -18,7 +20,8 @@ import pyarrow.parquet as pq
 
 from nostalgin_core.records import Front, Rejection
 from pipelines import bounded
-from pipelines.index import comma
+from pipelines.index import comma, told
+from pipelines.index.batches import decoded
 from pipelines.index.cells import text
 from pipelines.index.row import CSV, Row, contradictions, usable
 from pipelines.store import Store, parquet_bytes, tables
@@ -27,6 +30,7 @@ PARQUET: Final = "manifest.parquet"
 CSV_HASH: Final = b"nostalgin.csv_sha256"
 TITLE: Final = b"nostalgin.title"
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
+KEPT: Final = b"nostalgin.kept"  # columns of a list that mean nothing here
 PHOTO: Final = pa.schema(
     [
         pa.field("root", pa.string()),  # folder that `photo` is relative to
@@ -36,10 +40,10 @@ PHOTO: Final = pa.schema(
 )
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
-# Columns of a photograph or building that are there only where a list fills them.
-TOLD: Final = ("rights", "date", "source_url", "year")
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
-BATCH: Final = 1000  # rows
+# Columns that a list may tell of a photograph, and one of a building; none stands where
+# nothing is told.
+TOLD: Final = (*told.TOLD, told.AS_WRITTEN, "year")
 DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
 
@@ -58,6 +62,7 @@ class Manifest:
     sha256: str  # of what was read
     mended: bool = False  # the CSV was edited since it was written
     title: str = ""  # of the city; empty: its folder's name will do
+    kept: tuple[str, ...] = ()  # columns that `index` took from a list
 
 
 def row_of(
@@ -69,12 +74,20 @@ def row_of(
 
 
 def write(
-    store: Store, rows: list[dict[str, Any]], *, title: str = "", mended: bool = False
+    store: Store,
+    rows: list[dict[str, Any]],
+    *,
+    title: str = "",
+    mended: bool = False,
+    kept: Collection[str] = (),
 ) -> None:
-    """Write the manifest in both forms, in the order of block, ring, rank and photo."""
+    """Write the manifest in both forms, in the order of block, ring, rank and photo.
+
+    `kept` are columns of a list, which are remembered to be none of a slip's.
+    """
     known = SCHEMA.names
-    others = sorted({name for row in rows for name in row} - set(known))
-    ordered = sorted(rows, key=place)
+    others, ordered = {name for row in rows for name in row}, sorted(rows, key=place)
+    others = sorted(others.difference(known))
     text = comma.written([*known, *others], ordered).encode()
     extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
     table = pa.Table.from_pylist(ordered, extended)
@@ -83,6 +96,8 @@ def write(
         mark[TITLE] = title.encode()
     if mended:
         mark[MENDED] = b"yes"
+    if kept:
+        mark[KEPT] = json.dumps(sorted(kept)).encode()
     store.write_bytes(CSV, text)
     store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
 
@@ -97,7 +112,7 @@ def rewrite(store: Store, found: Manifest) -> Manifest:
     if not found.mended or found.rejections:
         return found
     rows = [typed(row) for row in found.rows]
-    write(store, rows, title=found.title, mended=True)
+    write(store, rows, title=found.title, mended=True, kept=found.kept)
     return read(store)
 
 
@@ -107,14 +122,14 @@ def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
     Returns the name of the file that holds their work, and its bytes.
     """
     csv, parquet = optional(store, CSV), optional(store, PARQUET)
-    told: dict[bytes, bytes] = {}
+    marks: dict[bytes, bytes] = {}
     if parquet is not None:
         with contextlib.suppress(pa.ArrowException, OSError):  # what it told is lost
-            told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
+            marks = pq.read_schema(io.BytesIO(parquet)).metadata or {}
     if csv is None:
-        return (PARQUET, parquet) if parquet is not None and MENDED in told else None
-    same = told.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
-    return None if same and MENDED not in told else (CSV, csv)
+        return (PARQUET, parquet) if parquet is not None and MENDED in marks else None
+    same = marks.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
+    return None if same and MENDED not in marks else (CSV, csv)
 
 
 def keep_copy(store: Store, name: str, data: bytes) -> str:
@@ -162,20 +177,23 @@ def read(store: Store) -> Manifest:
         Unusable: if there is none, or if what there is makes no sense.
     """
     mended, parquet = optional(store, CSV), optional(store, PARQUET)
-    title = ""
+    title, kept = "", tuple[str, ...]()
     if parquet is not None:
         table = parsed(parquet, store.root)
-        told = table.schema.metadata or {}
-        title = told.get(TITLE, b"").decode(errors="replace")
-        mark = told.get(CSV_HASH, b"").decode(errors="replace")
+        marks = table.schema.metadata or {}
+        title = marks.get(TITLE, b"").decode(errors="replace")
+        with contextlib.suppress(ValueError):  # what is kept is warned of, then
+            kept = tuple(map(str, json.loads(marks.get(KEPT, b"[]"))))
+        mark = marks.get(CSV_HASH, b"").decode(errors="replace")
         if mended is None or hashlib.sha256(mended).hexdigest() == mark:
-            rows = table.to_pylist()
-            found = checked(rows, table.column_names, parquet, PARQUET)
+            found = checked(
+                table.to_pylist(), table.column_names, parquet, PARQUET, kept=kept
+            )
             return replace(found, title=title)
     if mended is None:
         raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    found = checked(rows, names, mended, CSV)
+    found = checked(rows, names, mended, CSV, kept=kept)
     return replace(found, mended=parquet is not None, title=title)
 
 
@@ -200,15 +218,15 @@ def parsed(data: bytes, where: str) -> pa.Table:
     """Parse the Parquet form."""
     try:
         file = pq.ParquetFile(io.BytesIO(data))
-        told = file.metadata
-        groups = [told.row_group(number) for number in range(told.num_row_groups)]
+        footer = file.metadata
+        groups = [footer.row_group(n) for n in range(footer.num_row_groups)]
         bounded.fits(
             sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
         )
         names = file.schema_arrow.names
         if len(set(names)) < len(names):
             raise pa.ArrowInvalid("two columns have one name")
-        if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
+        if footer.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
             raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
         table = decoded(file)
         table.validate(full=True)  # or else words may be no UTF-8
@@ -220,28 +238,6 @@ def parsed(data: bytes, where: str) -> pa.Table:
     return table
 
 
-def decoded(file: pq.ParquetFile) -> pa.Table:
-    """Read a table bit by bit: a long word that is repeated takes a file no bytes.
-
-    Raises:
-        OSError: if it has more bytes than are read.
-    """
-    batches, size = [], 0
-    for batch in file.iter_batches(BATCH):
-        plain = [
-            one.dictionary_decode() if pa.types.is_dictionary(one.type) else one
-            for one in batch.columns
-        ]
-        size += sum(one.nbytes for one in plain)
-        bounded.fits(size, bounded.TABLE_BYTES, "")
-        batches.append(plain)
-    if not batches:
-        return file.read()
-    columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
-    names, told = file.schema_arrow.names, file.schema_arrow.metadata
-    return pa.Table.from_arrays(columns, names).replace_schema_metadata(told)
-
-
 def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
     """Parse the form that people mend."""
     try:
@@ -251,11 +247,17 @@ def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
 
 
 def checked(
-    cells: list[comma.Cells], names: list[str], data: bytes, name: str
+    cells: list[comma.Cells],
+    names: list[str],
+    data: bytes,
+    name: str,
+    *,
+    kept: tuple[str, ...] = (),
 ) -> Manifest:
     """Check every row by itself, so that one bad row spoils no other.
 
-    Rows in which nothing is written are counted, and else ignored.
+    Rows in which nothing is written are counted, and else ignored. `kept` are columns
+    that `index` took from a list, of which it has warned.
     """
     missing = [one for one in REQUIRED if one not in names]
     if missing:
@@ -263,7 +265,7 @@ def checked(
             f"{name} lacks the columns {', '.join(missing)}: it has "
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
-    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD)]
+    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD, *kept)]
     warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
     results = [
         usable(number, row)
@@ -276,4 +278,5 @@ def checked(
         tuple(one for one in results if isinstance(one, Rejection)),
         (*warnings, *contradictions(rows)),
         hashlib.sha256(data).hexdigest(),
+        kept=kept,
     )

@@ -37,6 +37,10 @@ class BlockTask:
     credit: str
     licence: str = ""
     sources: tuple[str, ...] = ()  # addresses of the archive's records
+    # What is told of each photo: credit, rights, licence, date, where any is.
+    told: tuple[tuple[Name, tuple[tuple[str, str], ...]], ...] = ()
+    heights_m: tuple[tuple[str, float], ...] = ()  # that are known, by building
+    targets_px: tuple[tuple[Name, float], ...] = ()  # x of the facade that is meant
 
     @property
     def key(self) -> str:
@@ -93,6 +97,12 @@ def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:
         for row in rows
         if row.photo and row.front
     }
+    told: dict[Name, dict[str, str]] = {}
+    for row in rows:
+        if row.photo and row.told:
+            words = {"credit": row.credit} if row.credit else {}
+            told.setdefault((rooted(row.root, city), row.photo), words | row.told)
+    facts = sorted((name, tuple(sorted(own.items()))) for name, own in told.items())
     return BlockTask(
         block,
         tuple(ordered),
@@ -100,6 +110,7 @@ def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:
         credit="; ".join(sorted({row.credit for row in rows if row.credit})),
         licence="; ".join(sorted({row.licence for row in rows if row.licence})),
         sources=tuple(sorted({row.source for row in rows if row.source})),
+        told=tuple(facts),
     )
 
 

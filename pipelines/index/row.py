@@ -10,6 +10,7 @@ from nostalgin_core.catalogue import inside
 from nostalgin_core.records import Front, Rejection
 from pipelines.index import comma
 from pipelines.index.cells import as_written, front_from, quoted, text
+from pipelines.index.told import AS_WRITTEN, TOLD
 
 CSV: Final = "manifest.csv"
 LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
@@ -27,6 +28,13 @@ class Row:
     cells: dict[str, Any] = field(compare=False)  # all that was written in the row
 
     @property
+    def told(self) -> dict[str, str]:
+        """Give what is told of the photograph beside its place: rights, licence..."""
+        known = {name: text(self.cells, name) for name in (*TOLD, AS_WRITTEN)}
+        known["source_url"] = self.source
+        return {name: words for name, words in known.items() if words}
+
+    @property
     def key(self) -> str:
         """Name the row in rejections."""
         return f"{CSV} row {self.number}"
@@ -34,13 +42,14 @@ class Row:
     @property
     def licence(self) -> str:
         """Tell under which licence the photo may be shown, if somebody wrote it."""
-        return text(self.cells, "rights")
+        said = (text(self.cells, name) for name in ("rights", "license"))
+        return "; ".join(word for word in said if word)
 
     @property
     def source(self) -> str:
-        """Give the address of the archive's record of the photo, if it is written."""
+        """Give the address of the archive's record of the photo, if that is a page."""
         address = text(self.cells, "source_url")
-        return address if address.startswith(("https://", "http://")) else ""
+        return address if address.lower().startswith(("https://", "http://")) else ""
 
 
 def contradictions(rows: Sequence[Row]) -> list[str]:

@@ -137,7 +137,7 @@ def of_buildings(
         if row.front is not None and key is not None:
             photo = {"key": key, "used": False, "caption": row.photo}
             building = f"{row.front.block}-{row.front.lot}"
-            told[building][key] = photo | said(row)
+            told[building][key] = photo | {"credit": row.credit} | row.told
     return {building: list(own.values()) for building, own in told.items()}
 
 
@@ -146,15 +146,8 @@ def words_of(shown: Sequence[tuple[Row, str | None]]) -> dict[str, dict[str, str
     words: dict[str, dict[str, str]] = {}
     for row, key in shown:
         if key is not None:
-            words.setdefault(key, said(row))
+            words.setdefault(key, {"credit": row.credit} | row.told)
     return words
-
-
-def said(row: Row) -> dict[str, str]:
-    """Take what a row says of its photo: credit, licence, date, its own record."""
-    date = str(row.cells.get("date") or "").strip()
-    more = {"rights": row.licence, "source_url": row.source, "date": date}
-    return {"credit": row.credit, **{name: word for name, word in more.items() if word}}
 
 
 def years(rows: Sequence[Row]) -> dict[str, dict[str, str]]:

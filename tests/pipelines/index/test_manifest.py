@@ -108,6 +108,16 @@ def test_unknown_columns_are_kept_with_a_warning(store: Store) -> None:
     assert {row.cells["remark"] for row in found.rows} == {"torn"}
 
 
+def test_columns_of_a_list_need_no_warning_even_when_mended(store: Store) -> None:
+    manifest.write(store, [row | {"remark": "torn"} for row in rows()], kept=["remark"])
+    assert manifest.read(store).warnings == ()
+    path = Path(store.root) / manifest.CSV
+    path.write_text(path.read_text().replace("torn", "whole"))
+    mended = manifest.rewrite(store, manifest.read(store))
+    assert mended.warnings == ()
+    assert {row.cells["remark"] for row in mended.rows} == {"whole"}
+
+
 @pytest.mark.parametrize(
     "path",
     ["../a.jpg", "b/../../a.jpg", "/etc/a.jpg", "a\0.jpg"],

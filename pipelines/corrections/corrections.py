@@ -1,0 +1,182 @@
+"""Corrections as people write them, a row each, in a file that `index` never touches.
+
+photo,front_id,building_id,what,value,note
+993_8.jpg,,,key,993-9,the board says so
+,993-11-0,,width_m,6.1,measured on the atlas
+,993-11-0,,order,12.5,stands between the fronts of rank 12 and 13
+,,993-11,height_m,18,five storeys
+993_8.jpg,,,target,412,the facade at x = 412 pixels
+"""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from typing import Any, Final, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+
+from nostalgin_core.records import Rejection
+from pipelines.index import comma
+from pipelines.index.cells import LEAST_M, MOST_FRONTS, MOST_M
+from pipelines.store import Store
+
+CSV: Final = "corrections.csv"
+LINES: Final = "corrections.jsonl"
+NAMES: Final = (CSV, LINES)
+CORRECTION_BYTES: Final = 50_000_000
+LONGEST: Final = 1000  # letters of a cell
+HIGHEST_M: Final = 320.0
+FARTHEST_PX: Final = 100_000.0
+# Of what each correction speaks, and within which limits its value lies.
+SUBJECTS: Final = {
+    "key": "photo",
+    "placard": "photo",
+    "target": "photo",
+    "width_m": "front_id",
+    "order": "front_id",
+    "height_m": "building_id",
+}
+LIMITS: Final = {
+    "width_m": (LEAST_M, MOST_M),
+    "height_m": (2.5, HIGHEST_M),
+    "order": (-1.0, MOST_FRONTS),
+    "target": (0.0, FARTHEST_PX),
+}
+
+What = Literal["key", "placard", "target", "width_m", "order", "height_m"]
+
+
+class Correction(BaseModel):
+    """One thing that somebody knows better."""
+
+    model_config = ConfigDict(
+        extra="ignore",
+        frozen=True,
+        coerce_numbers_to_str=True,
+        str_strip_whitespace=True,
+        str_max_length=LONGEST,
+    )
+
+    what: What
+    value: str
+    photo: str = ""
+    front_id: str = ""
+    building_id: str = ""
+    note: str = ""
+    row: str = ""  # which it is, in messages
+
+    @model_validator(mode="after")
+    def sensible(self) -> Self:
+        """Insist on what it speaks of, and on a value that this may have."""
+        if not self.subject:
+            raise ValueError(f"{SUBJECTS[self.what]} is empty: {self.what} is of one")
+        if self.what in LIMITS:
+            low, high = LIMITS[self.what]
+            if not low <= self.number <= high:
+                raise ValueError(f"{self.what} is not {low:g} to {high:g}")
+        elif len(self.lot_key) != 2:
+            raise ValueError(f"{self.what} is {self.value[:40]!r}: write block-lot")
+        return self
+
+    @property
+    def subject(self) -> str:
+        """Name the photograph, front or building that it speaks of."""
+        return str(getattr(self, SUBJECTS[self.what]))
+
+    @property
+    def number(self) -> float:
+        """Read a value that is a number."""
+        return float(self.value)
+
+    @property
+    def lot_key(self) -> tuple[str, ...]:
+        """Read a value that is a block and a lot: 993-8."""
+        block, mark, lot = self.value.rpartition("-")
+        parts = (block.strip(), lot.strip())
+        return parts if mark and all(parts) else ()
+
+
+@dataclass(frozen=True)
+class Corrections:
+    """What is corrected, what could not be read, and the bytes it was read from."""
+
+    given: tuple[Correction, ...] = ()
+    rejections: tuple[Rejection, ...] = ()
+    sha256: str = ""  # empty: there are none
+
+
+def read(store: Store) -> Corrections:
+    """Read a city's corrections, each by itself; a bad one is named, with the remedy.
+
+    Of two about the same thing the later counts.
+    """
+    given: dict[tuple[str, str], Correction] = {}
+    rejections: list[Rejection] = []
+    digest = hashlib.sha256()
+    found = [name for name in NAMES if store.exists(name)]
+    for name in found:
+        try:
+            data = store.read_bytes(name, CORRECTION_BYTES)
+            rows = lines(data) if name == LINES else table(data)
+        except (OSError, ValueError) as problem:
+            why = f"{getattr(problem, 'strerror', None) or problem}; mend the file"
+            rejections.append(Rejection(name, "corrections", "unreadable file", why))
+            continue
+        digest.update(name.encode() + b"\0" + data)
+        for number, cells in rows:
+            key = f"{name} row {number}"
+            try:
+                one = Correction.model_validate(cells | {"row": key})
+                given[meaning(one.what), one.subject] = one
+            except ValidationError as problem:
+                told = reason(problem)
+                bad = Rejection(key, "corrections", "nonsense correction", told)
+                rejections.append(bad)
+    sha256 = digest.hexdigest() if found else ""
+    return Corrections(tuple(given.values()), tuple(rejections), sha256)
+
+
+def meaning(what: str) -> str:
+    """Tell what a correction is about: a board's reading is a photograph's key."""
+    return "key" if what == "placard" else what
+
+
+def table(data: bytes) -> list[tuple[int, dict[str, Any]]]:
+    """List the rows of a CSV, as a spreadsheet counts.
+
+    Raises:
+        NoTable: if it is none.
+    """
+    _, rows = comma.parsed(data, ours=True)
+    return [
+        (number, {str(name): cell for name, cell in row.items() if name})
+        for number, row in enumerate(rows, 2)
+        if not comma.blank(row)
+    ]
+
+
+def lines(data: bytes) -> list[tuple[int, dict[str, Any]]]:
+    """List the objects of a text with one a line.
+
+    Raises:
+        ValueError: if a line is none.
+    """
+    found = []
+    for number, line in enumerate(data.decode("utf-8-sig").splitlines(), 1):
+        if line.strip():
+            try:
+                one = json.loads(line)
+            except RecursionError as problem:
+                raise ValueError(f"line {number} is nested too deep") from problem
+            if not isinstance(one, dict):
+                raise ValueError(f"line {number} is no object")
+            found.append((number, one))
+    return found
+
+
+def reason(problem: ValidationError) -> str:
+    """Tell the first thing that is wrong with a correction."""
+    first = problem.errors(include_url=False, include_input=False)[0]
+    where = ".".join(map(str, first["loc"]))
+    words = first["msg"].removeprefix("Value error, ")
+    return f"{where}: {words}" if where else words

@@ -1,0 +1,186 @@
+"""Lists of any kind become rows of the columns that `catalogue` reads.
+
+CSV is told by no suffix in particular, JSON by its own; an address on the web, or a
+JSON file that says so, is a IIIF manifest or collection, whose photographs `fetched`
+brings. What was brought once is never asked for again.
+"""
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from nostalgin_core import catalogue
+from nostalgin_core.catalogue import Catalogue
+from nostalgin_core.records import Rejection
+from pipelines import bounded
+from pipelines.index import comma, names
+from pipelines.index.images import Nothing
+from pipelines.index.web import is_web
+from pipelines.store import textual
+
+JSON: Final = (".json", ".jsonl", ".ndjson", ".geojson")
+FIRST_ROW: Final = 2
+FIRST_RECORD: Final = 1  # JSON has no header
+KEYS: Final = frozenset(("block", "tax_block", "lot", "tax_lot", "bbl"))
+PRESENTATION: Final = re.compile(r"iiif\.io/api/presentation/")
+
+Tell = Callable[..., None]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """The rows of a list, and what of it could not be read."""
+
+    name: str
+    rows: Sequence[comma.Cells]
+    rejections: tuple[Rejection, ...] = ()
+    first: int = FIRST_ROW  # the number of the first row, as people count
+    warnings: tuple[str, ...] = ()
+    beside: Sequence[comma.Cells] = ()  # what tells of photographs and of no place
+
+    def read(self) -> Catalogue:
+        """Read all rows, each by itself."""
+        made = catalogue.read(self.rows, name=self.name, first=self.first)
+        told = (*boroughs(self), *self.warnings)
+        return replace(
+            made,
+            rejections=(*self.rejections, *made.rejections),
+            warnings=(*told, *made.warnings),
+        )
+
+
+def silent(event: str, words: str, **facts: Any) -> None:
+    """Tell nobody."""
+
+
+def opened(
+    source: str | Path, listed: str | Path | None, city: str, *, tell: Tell = silent
+) -> tuple[Path, Listing | None]:
+    """Find the folder that holds the photographs, and the list that tells of them.
+
+    A IIIF source is brought into the city folder first; a list beside it tells where
+    its photographs belong, and the manifest whose they are.
+
+    Raises:
+        Nothing: if either can't be read.
+    """
+    given = None if listed is None else listing(listed, city)
+    name = str(source)
+    if not is_web(name) and not presents(Path(source)):
+        return Path(source), given
+    from pipelines.index import fetched
+
+    if not textual(name):
+        raise Nothing(f"{name!r} is no address")
+    folder, brought = fetched.brought(name, city, tell=tell)
+    if given is not None:
+        return folder, joined(given, brought)
+    return folder, placed(brought, brought.name)
+
+
+def presents(path: Path) -> bool:
+    """Tell whether a path is of a file that may be a IIIF manifest."""
+    try:
+        return path.suffix.casefold() == ".json" and path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def listing(listed: str | Path, city: str) -> Listing:
+    """Read a list of whatever kind.
+
+    Raises:
+        Nothing: if it can't be read.
+    """
+    if is_web(str(listed)):
+        from pipelines.index import fetched
+
+        return fetched.listing(str(listed), city)
+    path = Path(listed)
+    try:
+        data = bounded.read(path, bounded.TABLE_BYTES)
+    except OSError as problem:
+        raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
+    if path.suffix.casefold() in JSON:
+        return of_json(data, path, city)
+    try:
+        _, rows = comma.parsed(data)
+    except comma.NoTable as problem:
+        raise Nothing(f"{path} {problem}") from problem
+    return Listing(path.name, rows)
+
+
+def of_json(data: bytes, path: Path, city: str) -> Listing:
+    """Read a list that is JSON: objects, or a IIIF manifest.
+
+    Raises:
+        Nothing: if it is neither.
+    """
+    if PRESENTATION.search(data[:4096].decode(errors="replace")):
+        from pipelines.index import fetched
+
+        return fetched.listing(str(path), city)
+    from pipelines.index import objects
+
+    try:
+        read = objects.rows(data, path.name)
+    except objects.NoList as problem:
+        raise Nothing(f"{path} {problem}") from problem
+    return Listing(path.name, read.rows, read.rejections, FIRST_RECORD)
+
+
+def joined(given: Listing, brought: Listing) -> Listing:
+    """Let a list tell where photographs belong, and a manifest whose they are."""
+    return replace(
+        given,
+        rejections=(*given.rejections, *brought.rejections),
+        warnings=(*given.warnings, *brought.warnings),
+        beside=brought.rows,
+    )
+
+
+def placed(listing: Listing, title: str) -> Listing:
+    """Give rows without a block and a lot those of their photograph's name.
+
+    Where that tells none, the photographs stand in one row, in the order of the list.
+    """
+    rows = []
+    for number, row in enumerate(listing.rows, 1):
+        known = {catalogue.plain(name) for name, cell in row.items() if name and cell}
+        if not known & KEYS:
+            told = names.block_and_lot(row["photo"])
+            block, lot = told or (names.row_name(title), str(number))
+            rows.append(row | {"block": block, "lot": lot})
+        else:
+            rows.append(row)
+    return replace(listing, rows=rows)
+
+
+def boroughs(listing: Listing) -> list[str]:
+    """Warn of a list of several boroughs, which number their blocks alike."""
+    named = {
+        str(cell).strip().casefold()
+        for row in listing.rows
+        for column, cell in row.items()
+        if column and str(column).strip().casefold() == "borough" and cell
+    } - {""}
+    if len(named) < 2:
+        return []
+    shown = ", ".join(sorted(named)[:6])
+    words = f"it has blocks of {len(named)} boroughs ({shown[:200]})"
+    return [f"{listing.name}: {words}, numbered alike: index one borough at a time"]
+
+
+def decoded(data: bytes) -> Any:
+    """Read JSON that may be hostile.
+
+    Raises:
+        ValueError: if it is none.
+    """
+    try:
+        return json.loads(data.decode("utf-8-sig"))
+    except RecursionError as problem:
+        raise ValueError("nested too deep") from problem

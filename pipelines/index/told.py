@@ -1,0 +1,135 @@
+"""What a list tells of a photograph beside its place: whose it is, when it was taken.
+
+Rights, licence, date and source travel under one name each, whatever a list calls them,
+from the list to the manifest, the site and the model. Columns that mean nothing here
+are kept under their own names.
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any, Final
+
+from nostalgin_core import catalogue
+from nostalgin_core.catalogue import Entry
+from nostalgin_core.records import Front
+from pipelines.index import dates
+
+TOLD: Final[Mapping[str, tuple[str, ...]]] = {
+    "rights": ("rights", "rights_statement", "usage_rights", "copyright"),
+    "license": ("license", "licence", "rights_uri"),
+    "date": ("date", "taken"),
+    "source_url": ("source_url", "source", "record_url", "url", "homepage"),
+}
+AS_WRITTEN: Final = "date_as_written"  # where it is no EDTF
+LONGEST_NAME: Final = 100  # letters of a column that is kept
+MOST_COLUMNS: Final = 200  # that are kept
+MOST_TOLD: Final = 5  # dates that are no EDTF
+OURS: Final = "list_"  # before a column that the manifest has for itself
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is told of each photograph and each lot, and what is doubtful about it."""
+
+    by_row: dict[int, dict[str, str]]
+    by_lot: dict[tuple[str, str], dict[str, str]]
+    by_photo: dict[str, dict[str, str]] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    def of(
+        self, photo: str, entries: Sequence[Entry], front: Front | None
+    ) -> dict[str, str]:
+        """Give what is told of a photograph by its rows, the first that tells a thing.
+
+        Of a front without a photograph it is what is told of its lot.
+        """
+        if not photo and front is not None:
+            return self.by_lot.get((front.block, front.lot), {})
+        found = self.by_photo.get(stem(photo), {})
+        for entry in reversed(entries):
+            found = found | self.by_row.get(entry.row, {})
+        return found
+
+
+def told(
+    rows: Sequence[Mapping[Any, Any]],
+    entries: Sequence[Entry],
+    *,
+    reserved: Sequence[str],
+    name: str,
+    first: int,
+    beside: Sequence[Mapping[Any, Any]] = (),
+) -> Told:
+    """Gather what a list's rows tell; `reserved` are columns of the manifest's own.
+
+    `beside` are rows that tell of photographs by name, and of no place.
+    """
+    every = (*rows, *beside)
+    columns = list(dict.fromkeys(key for row in every for key in row if key))
+    plain = {catalogue.plain(column): column for column in columns}
+    known = {
+        field: next((plain[alias] for alias in aliases if alias in plain), None)
+        for field, aliases in TOLD.items()
+    }
+    taken = {column for column in known.values() if column is not None}
+    unknown = [one for one in catalogue.unknown(columns) if one not in taken]
+    kept = [one for one in unknown if len(one) <= LONGEST_NAME][:MOST_COLUMNS]
+    names = {one: _own(one, {*reserved, *TOLD, AS_WRITTEN}) for one in kept}
+    reader = Reader(names, known)
+    by_row = {entry.row: reader.read(rows[entry.row - first]) for entry in entries}
+    by_lot: dict[tuple[str, str], dict[str, str]] = {}
+    for entry in entries:
+        by_lot.setdefault((entry.block, entry.lot), by_row[entry.row])
+    by_photo = {stem(text(row.get("photo"))): reader.read(row) for row in beside}
+    warnings = reader.undated(name)
+    if len(kept) < len(unknown):
+        lost = len(unknown) - len(kept)
+        limits = f"{MOST_COLUMNS} columns with names of {LONGEST_NAME} letters"
+        warnings.append(f"{name}: {lost} columns are not kept: at most {limits} are")
+    return Told(by_row, by_lot, by_photo, tuple(warnings))
+
+
+@dataclass
+class Reader:
+    """Reads rows by their columns, and counts the dates that are none."""
+
+    names: Mapping[str, str]  # of columns that are kept: theirs, ours
+    known: Mapping[str, str | None]  # of what is told under one name: ours, theirs
+    strange: Counter[str] = field(default_factory=Counter)
+
+    def read(self, row: Mapping[Any, Any]) -> dict[str, str]:
+        """Read what a row tells; what is empty tells nothing."""
+        cells = {ours: text(row.get(theirs)) for theirs, ours in self.names.items()}
+        for field_name, column in self.known.items():
+            cells[field_name] = text(row.get(column)) if column else ""
+        written = cells["date"]
+        cells["date"] = dates.edtf(written) or "" if written else ""
+        if written and not cells["date"]:
+            cells[AS_WRITTEN] = written
+            self.strange[written] += 1
+        return {one: cell for one, cell in cells.items() if cell}
+
+    def undated(self, name: str) -> list[str]:
+        """Tell which dates are no EDTF, and how often they are written."""
+        return [
+            f"{name}: the date {written[:40]!r} ({count} rows) is no EDTF; it is kept "
+            "as it is written: write 1940, 1939/1941 or 1940~"
+            for written, count in sorted(self.strange.items())[:MOST_TOLD]
+        ]
+
+
+def stem(photo: str) -> str:
+    """Write a photograph's name as names are compared: without folder and suffix."""
+    return PurePosixPath(photo.strip().replace("\\", "/")).stem.casefold()
+
+
+def text(cell: Any) -> str:
+    """Read a cell."""
+    return str(cell if cell is not None else "").strip()
+
+
+def _own(column: str, reserved: set[str]) -> str:
+    """Call a column as its list does, if the manifest has no such column itself."""
+    return f"{OURS}{column}" if column in reserved else column

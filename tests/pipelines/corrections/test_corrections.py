@@ -1,0 +1,178 @@
+"""Corrections: read each by itself, merged, and obeyed by a build."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from nostalgin_core.records import Front
+from pipelines import corrections
+from pipelines.corrections.corrections import Corrections
+from pipelines.index import manifest
+from pipelines.index.row import Row
+from pipelines.store import Store
+from tests.pipelines import painted
+from tests.pipelines.cities import artifacts, built, tree
+
+HEAD = "photo,front_id,building_id,what,value,note\n"
+
+
+def front(lot: int, rank: int, side: int = 0, width_m: float = 7.62) -> Front:
+    named = f"5-{lot}-{side}"
+    where = {"street": "Elm Street", "address": str(lot), "depth_m": None}
+    return Front(
+        named,
+        "5",
+        str(lot),
+        0,
+        side,
+        rank,
+        width_m=width_m,
+        width_assumed=True,
+        **where,
+    )
+
+
+ROWS = tuple(
+    Row(number, "/photos", f"5_{lot}.png", front(lot, lot - 1, side), "", {})
+    for number, (lot, side) in enumerate([(1, 0), (2, 0), (3, 0), (4, 1)], 2)
+)
+
+
+def read(folder: Path, *lines: str) -> Corrections:
+    (folder / "corrections.csv").write_text(HEAD + "\n".join(lines) + "\n")
+    return corrections.read(Store(str(folder)))
+
+
+def order(rows: tuple[Row, ...]) -> list[str]:
+    fronts = sorted((r.front for r in rows if r.front), key=lambda one: one.rank)
+    assert [one.rank for one in fronts] == list(range(len(fronts)))
+    return [one.lot for one in fronts]
+
+
+def test_without_corrections_nothing_is_changed(tmp_path: Path) -> None:
+    none = corrections.read(Store(str(tmp_path)))
+    made = corrections.applied(ROWS, none)
+    assert (made.rows, made.changes, made.rejections) == (ROWS, (), ())
+    assert none.sha256 == ""
+
+
+def test_a_key_moves_a_photo_and_loses_no_front(tmp_path: Path) -> None:
+    made = corrections.applied(ROWS, read(tmp_path, "5_1.png,,,key,5-3,the board"))
+    shown = {(row.photo, row.front.lot) for row in made.rows if row.front}
+    assert shown == {
+        ("", "1"),
+        ("5_2.png", "2"),
+        ("5_3.png", "3"),
+        ("5_1.png", "3"),
+        ("5_4.png", "4"),
+    }
+    (change,) = made.changes
+    assert (change.before, change.after, change.note) == ("5-1", "5-3", "the board")
+
+
+def test_a_board_s_reading_is_a_key_and_the_later_counts(tmp_path: Path) -> None:
+    given = read(tmp_path, "5_1.png,,,placard,5-3,", "5_1.png,,,key,5-2,")
+    (change,) = corrections.applied(ROWS, given).changes
+    assert change.after == "5-2"
+
+
+def test_a_width_is_known_no_longer_assumed(tmp_path: Path) -> None:
+    made = corrections.applied(ROWS, read(tmp_path, ",5-2-0,,width_m,6.1,"))
+    (wide,) = [r.front for r in made.rows if r.front and r.front.lot == "2"]
+    assert wide == replace(front(2, 1), width_m=6.1, width_assumed=False)
+    assert made.changes[0].before == "7.62 assumed"
+    assert [r for r in made.rows if r.front and r.front.lot != "2"] == [
+        r for r in ROWS if r.front and r.front.lot != "2"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "lots"),
+    [
+        ("-1", ["3", "1", "2", "4"]),
+        ("0.5", ["1", "3", "2", "4"]),
+        ("2", ["1", "2", "3", "4"]),
+        ("9", ["1", "2", "4", "3"]),
+    ],
+)
+def test_an_order_is_a_permutation(value: str, lots: list[str], tmp_path: Path) -> None:
+    made = corrections.applied(ROWS, read(tmp_path, f",5-3-0,,order,{value},"))
+    assert order(made.rows) == lots
+    assert made.rejections == ()
+
+
+def test_a_front_takes_the_side_that_it_is_moved_to(tmp_path: Path) -> None:
+    made = corrections.applied(ROWS, read(tmp_path, ",5-4-1,,order,0.5,"))
+    (moved,) = [r.front for r in made.rows if r.front and r.front.lot == "4"]
+    assert (moved.rank, moved.side) == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("x.png,,,key,5-3,", "no such photo"),
+        ("5_1.png,,,key,5-77,", "no such lot"),
+        ("5_1.png,,,key,five,", "nonsense correction"),
+        (",,,key,5-3,", "nonsense correction"),
+        (",5-9-0,,width_m,6,", "no such front"),
+        (",5-1-0,,width_m,nan,", "nonsense correction"),
+        (",5-1-0,,width_m,0.1,", "nonsense correction"),
+        (",5-1-0,,width_m,wide,", "nonsense correction"),
+        (",5-9-0,,order,1,", "no such front"),
+        (",,5-9,height_m,12,", "no such building"),
+        (",,5-1,height_m,inf,", "nonsense correction"),
+        ("x.png,,,target,12,", "no such photo"),
+        ("5_1.png,,,mood,12,", "nonsense correction"),
+        (f"5_1.png,,,key,{'9' * 5000}-1,", "nonsense correction"),
+    ],
+)
+def test_what_makes_no_sense_is_told_by_its_row_and_changes_nothing(
+    line: str, said: str, tmp_path: Path
+) -> None:
+    made = corrections.applied(ROWS, read(tmp_path, line))
+    assert (made.rows, made.changes) == (ROWS, ())
+    ((key, reason),) = [(one.key, one.reason) for one in made.rejections]
+    assert (key, reason) == ("corrections.csv row 2", said)
+
+
+@pytest.mark.parametrize("data", [b"\xff\xfe", b'"', b"a;b\n1;2\n"])
+def test_a_file_that_is_no_table_is_told(data: bytes, tmp_path: Path) -> None:
+    (tmp_path / "corrections.csv").write_bytes(data)
+    (rejection,) = corrections.read(Store(str(tmp_path))).rejections
+    assert rejection.key == "corrections.csv"
+
+
+def test_lines_of_json_say_the_same_as_a_table(tmp_path: Path) -> None:
+    one = {"what": "width_m", "front_id": "5-2-0", "value": 6.1}
+    (tmp_path / "corrections.jsonl").write_text(f"{json.dumps(one)}\n\n")
+    by_lines = corrections.applied(ROWS, corrections.read(Store(str(tmp_path)))).rows
+    (tmp_path / "corrections.jsonl").unlink()
+    assert (
+        corrections.applied(ROWS, read(tmp_path, ",5-2-0,,width_m,6.1,")).rows
+        == by_lines
+    )
+
+
+def test_a_build_obeys_and_does_again_only_the_block(tmp_path: Path) -> None:
+    city = painted.write_city(tmp_path)
+    first = built(city)
+    before = tree(city)
+    building = manifest.read(Store(str(city))).rows[0].front
+    assert building is not None
+    named = f"{building.block}-{building.lot}"
+    (city / "corrections.csv").write_text(f"{HEAD},,{named},height_m,31.5,\n")
+    report = built(city)
+    assert report.run != first.run
+    told = json.loads((city / "site" / "site.json").read_text())
+    high = {
+        b["id"]: b["height_m"] for block in told["blocks"] for b in block["buildings"]
+    }
+    assert high[named] == 31.5
+    fresh = tree(city).keys() - before.keys()
+    stages = {name.split("/")[1] for name in fresh if name.startswith("artifacts/")}
+    assert stages == {"block"}
+    assert len(artifacts(city, "block")) == report.blocks + 1
+    (city / "corrections.csv").unlink()
+    assert built(city).run == first.run
