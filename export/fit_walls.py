@@ -1,8 +1,9 @@
 """The ten weights of `nostalgin_core/segment/walls.py` are fitted to hand labels.
 
-Every front that the network gives a score of a quarter is a wall where less than half of
-what is to be seen of it lies on labelled fronts; far rows are left out. Tax blocks 996
-and 997 and nine in ten of the streets are learnt from, block 993 and the rest are not.
+Every front that the network gives a score of a quarter is a wall where less than half
+of what is to be seen of it lies on labelled fronts; far rows are left out. Tax blocks
+996 and 997 and nine in ten of the streets are learnt from, block 993 and the rest are
+not.
 The weights minimise the logistic loss, summed over fronts, plus their squares, each as
 the spread of its feature has it.
 
@@ -19,8 +20,8 @@ from scipy.optimize import minimize
 
 from export.mask_rcnn_onnx import open_shipped
 from export.segmentation_data import Sample, fill, read_folder
-from nostalgin_core.arrays import Mask
-from nostalgin_core.records import Box, Instance, Photo
+from nostalgin_core.photo import exposed
+from nostalgin_core.records import Instance, Photo
 from nostalgin_core.segment import Network
 from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
@@ -54,26 +55,24 @@ def fronts(
     """Return what is weighed of every front found, and which are walls."""
     rows, walls = [], []
     for sample in samples:
-        height, width = sample.image.shape
-        photo = Photo(sample.name, sample.image, Box(0, 0, width, height))
+        photo = Photo(sample.name, sample.image, exposed(sample.image))
         found = everything(photo, network, least=LEAST)
         things = mended(hiding(found.things), found.pixels, photo.frame)
         seen, hidden = planes(photo, found.pixels), before(things, photo.frame)
         for one in things:
-            wall = _wall(one, sample, hidden) if one.category == "facade" else None
+            wall = _wall(one, sample) if one.category == "facade" else None
             if wall is not None:
                 rows.append(features(one, seen, hidden, photo.frame))
                 walls.append(wall)
     return np.array(rows).reshape(-1, 10), np.array(walls, bool)
 
 
-def _wall(one: Instance, sample: Sample, hidden: Mask) -> bool | None:
-    """Tell whether a front is a wall, None where nobody can."""
+def _wall(one: Instance, sample: Sample) -> bool | None:
+    """Tell whether what truly shows of a front is a wall, None where nobody can."""
     shape = sample.image.shape
     mask = np.zeros(shape, bool)
     x0, y0, x1, y1 = one.box
     mask[y0:y1, x0:x1] = one.probability > 0.5
-    mask &= ~hidden
     for thing in sample.things:
         if thing.layer:
             mask &= ~fill(thing.rings, shape)
