@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from nostalgin_core.arrays import Mask
 
@@ -47,21 +47,54 @@ def matches(
         ignored: Where nobody can tell things apart.
         least: The overlap that makes a hit.
     """
-    overlaps = table(masks, truths)
-    free = np.ones(len(truths), bool)
-    kept, hits = [], []
+    found = partners(scores, table(masks, truths), least=least)
+    kept = [
+        i
+        for i in np.argsort(-np.asarray(scores, float), kind="stable")
+        if found[i] >= 0 or covered(masks[i], ignored) < least
+    ]
+    return Matches(np.asarray(scores, float)[kept], found[kept] >= 0, len(truths))
+
+
+def matches_of_kind(
+    scores: Sequence[float],
+    masks: Sequence[Mask],
+    truths: Sequence[Mask],
+    ignored: Mask,
+    *,
+    asked: Bool[np.ndarray, " m"],
+    counted: Bool[np.ndarray, " n"],
+    least: float,
+) -> Matches:
+    """Match all, but ask for some truths alone, as COCO does by area.
+
+    What is found of the other truths is left out, and so is what is wrong, unless it
+    is `counted` among the kind.
+    """
+    found = partners(scores, table(masks, truths), least=least)
+    kept = [
+        i
+        for i in np.argsort(-np.asarray(scores, float), kind="stable")
+        if (asked[found[i]] if found[i] >= 0 else counted[i])
+        and (found[i] >= 0 or covered(masks[i], ignored) < least)
+    ]
+    asked_for = int(np.count_nonzero(asked))
+    return Matches(np.asarray(scores, float)[kept], found[kept] >= 0, asked_for)
+
+
+def partners(
+    scores: Sequence[float], overlaps: Float[np.ndarray, "n m"], *, least: float
+) -> Int[np.ndarray, " n"]:
+    """Give each thing the free truth it overlaps most, surest first; -1 for none."""
+    free = np.ones(overlaps.shape[1], bool)
+    found = np.full(len(overlaps), -1)
     for i in np.argsort(-np.asarray(scores, float), kind="stable"):
         open_to = np.where(free, overlaps[i], -1.0)
-        best = int(np.argmax(open_to)) if len(truths) else -1
+        best = int(np.argmax(open_to)) if len(free) else -1
         if best >= 0 and open_to[best] >= least:
             free[best] = False
-        elif covered(masks[i], ignored) >= least:
-            continue
-        else:
-            best = -1
-        kept.append(float(scores[i]))
-        hits.append(best >= 0)
-    return Matches(np.array(kept, float), np.array(hits, bool), len(truths))
+            found[i] = best
+    return found
 
 
 def together(parts: Sequence[Matches]) -> Matches:

@@ -122,3 +122,17 @@ def bounded_aspect(found: Corners, true: Corners, true_aspect: float) -> float:
     middles = (flat + np.roll(flat, -1, axis=0)) / 2
     across, down = middles[1] - middles[3], middles[2] - middles[0]
     return float(np.linalg.norm(across) / np.linalg.norm(down))
+
+
+def view_deg(quad: Corners, camera_matrix: Matrix3) -> float:
+    """Measure at what angle a front is seen: 0 straight on, near 90 along it.
+
+    It is the angle between the front's normal and the ray to the quad's middle, where
+    its diagonals meet. The quad is a rectangle's image.
+    """
+    unit = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    plane = np.linalg.solve(camera_matrix, homography.between(unit, quad))
+    normal = np.cross(plane[:, 0], plane[:, 1])
+    ray = plane @ [0.5, 0.5, 1.0]
+    cosine = abs(normal @ ray) / (np.linalg.norm(normal) * np.linalg.norm(ray))
+    return float(np.degrees(np.arccos(min(1.0, cosine))))

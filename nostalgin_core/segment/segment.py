@@ -20,6 +20,7 @@ from nostalgin_core.segment.flare import flares
 from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
 from nostalgin_core.segment.punch import healed, punches
+from nostalgin_core.segment.walls import without_walls
 
 STRIDE_PX = 32
 
@@ -101,9 +102,9 @@ def trusted(
     """Keep what scores enough for its kind; a photo without a front is refused.
 
     A tax photo has one number board, so of the placards only the surest is kept. What
-    is painted on fronts is dropped (`hiding`), and pixels mend the masks of the rest;
-    punched holes and flares on fronts are added, for the network was taught few or
-    none.
+    is painted on fronts is dropped (`hiding`), pixels mend the masks of the rest, and
+    fronts that prove to be bare walls go (`walls`); punched holes and flares on fronts
+    are added, for the network was taught few or none.
     """
     least = {"facade": facade_score}
     board = max((f.score for f in found.things if f.category == "placard"), default=0.0)
@@ -115,7 +116,16 @@ def trusted(
     )
     if any(one.category == "facade" for one in kept):
         agreed = mended(hiding(kept), found.pixels, photo.frame)
-        return punches(photo) + flares(photo, kept) + agreed
+        judged = without_walls(photo, agreed, found.pixels)
+        if not any(one.category == "facade" for one in judged):
+            return Rejection(
+                photo.key,
+                "segment",
+                "walls alone",
+                "what looks like fronts shows neither windows nor cornices: mask it by "
+                "hand if there is one",
+            )
+        return punches(photo) + flares(photo, kept) + judged
     return Rejection(
         photo.key,
         "segment",

@@ -66,6 +66,9 @@ def segmentation_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/ and labels/.")],
     *,
     block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    sheet: Annotated[
+        Path | None, typer.Option(help="Folder for pictures of each kind of error.")
+    ] = None,
     models: ModelsFolder = None,
     as_json: AsJson = False,
 ) -> None:
@@ -76,7 +79,9 @@ def segmentation_command(
         labelled = labels.pairs(folder, block=block)
         from pipelines.evaluate import segmentation, segmentation_table
 
-        report = segmentation.evaluate(labelled, network(models, "segment"))
+        report = segmentation.evaluate(
+            labelled, network(models, "segment"), sheet=sheet
+        )
     tell(report, segmentation_table.text(report), as_json=as_json)
 
 

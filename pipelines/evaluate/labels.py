@@ -14,6 +14,9 @@ import cv2
 import numpy as np
 
 from nostalgin_core.arrays import Mask
+from nostalgin_core.measure.rectification import view_deg
+from nostalgin_core.records import Box
+from nostalgin_core.rectify import camera
 from pipelines.evaluate import Unmeasurable
 
 PICTURES = (".jpg", ".jpeg", ".png", ".tif", ".tiff")
@@ -26,6 +29,7 @@ class Front:
     whole: Mask  # as if nothing stood before it
     visible: Mask
     target: bool
+    view_deg: float | None  # from straight on; None without a labelled quad
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +122,8 @@ def truth(label: dict[str, Any], shape: tuple[int, int]) -> Truth:
     groups = union([mask for one, mask in facades if one.get("group")], shape)
     return Truth(
         fronts=tuple(
-            Front(mask, mask & ~hidden, bool(one.get("target"))) for one, mask in single
+            Front(mask, mask & ~hidden, bool(one.get("target")), _view_deg(one, shape))
+            for one, mask in single
         ),
         hiders=hiders,
         visible=built & ~hidden,
@@ -126,6 +131,18 @@ def truth(label: dict[str, Any], shape: tuple[int, int]) -> Truth:
         hidden=hidden,
         far=groups & ~built,
     )
+
+
+def _view_deg(one: dict[str, Any], shape: tuple[int, int]) -> float | None:
+    """Tell at what angle a labelled front is seen, by the prior focal length."""
+    if one.get("quad") is None:
+        return None
+    frame = Box(0, 0, shape[1], shape[0])
+    seen_by = camera.matrix(camera.prior_focal_px(frame), frame)
+    try:
+        return view_deg(np.array(one["quad"], np.float64), seen_by)
+    except np.linalg.LinAlgError:  # three corners in line: a guess far off
+        return None
 
 
 def union(masks: list[Mask], shape: tuple[int, int]) -> Mask:

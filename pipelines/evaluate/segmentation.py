@@ -11,7 +11,9 @@ Each labelled photo goes through the shipped stages photo, segment and matte. Re
 - the share of what hides fronts that is called an occluder, and the share of visible
   front that is, too (means over photos);
 - average precision per class at overlaps of 0.5 and 0.75, of the network's things by
-  their scores, before anything is arranged.
+  their scores, before anything is arranged;
+- fronts by size, angle of view and kind of error, and how far stated probabilities of
+  being the target can be trusted (`segmentation_kinds`).
 """
 
 import time
@@ -34,8 +36,14 @@ from nostalgin_core.measure.segmentation import Agreement, agreement, overlap
 from nostalgin_core.records import Instance, Matted, Rejection
 from nostalgin_core.segment import CATEGORIES, Network
 from nostalgin_core.segment.segment import everything, trusted
-from pipelines.evaluate import Unmeasurable, labels
+from pipelines.evaluate import (
+    Unmeasurable,
+    labels,
+    segmentation_kinds,
+    segmentation_sheet,
+)
 from pipelines.evaluate.labels import Truth
+from pipelines.evaluate.segmentation_kinds import Kinds
 
 UNSURE: Final = 0.05  # average precision asks for what scores this much
 FOUND: Final = 0.5  # overlap from which a front counts as found
@@ -55,13 +63,20 @@ class Answer:
 
 
 def evaluate(
-    labelled: Sequence[tuple[dict[str, Any], Path]], network: Network
+    labelled: Sequence[tuple[dict[str, Any], Path]],
+    network: Network,
+    *,
+    sheet: Path | None = None,
 ) -> dict[str, Any]:
     """Measure the stages on labels and their photos, as `labels.pairs` gives them.
+
+    Photos with errors are drawn into the folder `sheet`, a sheet a kind of error.
 
     Raises:
         Unmeasurable: if a file can't be read as a photo.
     """
+    sorted_out: list[tuple[str, Kinds]] = []
+    cells: dict[str, list[segmentation_sheet.Colour]] = {}
     rows: list[dict[str, Any]] = []
     found: dict[tuple[str, str], list[Matches]] = {
         (c, name): [] for c in CATEGORIES for name in OVERLAPS
@@ -70,12 +85,21 @@ def evaluate(
         answer = answered(file, network)
         true = labels.truth(label, answer.shape)
         rows.append({"id": label["id"]} | compared(answer, true))
+        told = in_kinds(answer, true)
+        sorted_out.append((label["id"], told))
+        if sheet is not None:
+            drawn = segmentation_sheet.cells(file, label["id"], answer, true, told)
+            for kind, cell in drawn.items():
+                cells.setdefault(kind, []).append(cell)
         for category in CATEGORIES:
             for name, least in OVERLAPS.items():
                 found[category, name].append(
                     detected(answer, true, category, least=least)
                 )
-    return summed(rows, {key: together(parts) for key, parts in found.items()})
+    if sheet is not None:
+        segmentation_sheet.write(cells, sheet)
+    report = summed(rows, {key: together(parts) for key, parts in found.items()})
+    return report | segmentation_kinds.summed(sorted_out)
 
 
 def answered(file: Path, network: Network) -> Answer:
@@ -165,6 +189,17 @@ def detected(answer: Answer, true: Truth, category: str, *, least: float) -> Mat
     masks = [placed(one, answer.shape) for one in found]
     scores = [one.score for one in found]
     return matches(scores, masks, truths, ignored, least=least)
+
+
+def in_kinds(answer: Answer, true: Truth) -> Kinds:
+    """Sort one photo's fronts by size, angle and error."""
+    found = [one for one in answer.instances if one.category == "facade"]
+    return segmentation_kinds.kinds(
+        [one.score for one in found],
+        [placed(one, answer.shape) for one in found],
+        answer.matted,
+        true,
+    )
 
 
 def placed(one: Instance, shape: tuple[int, int]) -> Mask:

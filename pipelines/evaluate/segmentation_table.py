@@ -14,6 +14,15 @@ FIGURES = {
     "occluders_false": "visible front called occluder",
 }
 
+NAMED = 6  # photos in a line
+ERRORS = {
+    "merged": "taken for one with another front",
+    "split": "cut up",
+    "missed": "missed",
+    "walled": "lost in a wall, sky or street",
+    "wall": "claimed where no front is",
+}
+
 
 def text(report: dict[str, Any]) -> str:
     """Write the report as tables."""
@@ -32,6 +41,14 @@ def text(report: dict[str, Any]) -> str:
             *(f"{words:<46}{value:>8}" for words, value in told),
             "",
             *precisions(report["average_precision"]),
+            "",
+            *by_kind("visible share of the photo", report["facades_by_size"]),
+            "",
+            *by_kind("degrees from straight on", report["facades_by_angle_deg"]),
+            "",
+            *errors(report["errors"]),
+            "",
+            *calibration(report["target_probability"]),
         ]
     )
 
@@ -58,6 +75,43 @@ def precisions(rows: dict[str, dict[str, Any]]) -> list[str]:
         cells = "".join(f"{said(row[name]):>8}" for name in ("AP50", "AP75"))
         lines.append(f"{category:<12}{row['labelled']:>10}{cells}")
     return lines
+
+
+def by_kind(head: str, rows: dict[str, dict[str, Any]]) -> list[str]:
+    """Write the average precision of fronts of each size, or angle."""
+    lines = [f"{head:<28}{'labelled':>10}{'AP50':>8}"]
+    return lines + [
+        f"{name:<28}{row['labelled']:>10}{said(row['AP50']):>8}"
+        for name, row in rows.items()
+    ]
+
+
+def errors(told: dict[str, Any]) -> list[str]:
+    """Write how many fronts went wrong in which way, and in which photos."""
+    lines = [f"of {told['fronts']} labelled fronts, and {told['claimed']} claimed"]
+    for kind, words in ERRORS.items():
+        row = told[kind]
+        photos = row["photos"]
+        named = ", ".join(photos[:NAMED]) + (", ..." if len(photos) > NAMED else "")
+        lines.append(f"{words:<40}{row['count']:>5}  {named}".rstrip())
+    return lines
+
+
+def calibration(told: dict[str, Any]) -> list[str]:
+    """Write how often what was stated of being the target came true."""
+    lines = [
+        f"a target was called in {told['called']} of {told['photos']} photos,",
+        f"rightly in {told['called_rightly']}; the likeliest was right in "
+        + str(told["first_right"]),
+        "stated probability: Brier score, calibration error "
+        + ", ".join(said(told[name]) for name in ("brier", "error")),
+        f"{'stated':<14}{'fronts':>8}{'mean':>8}{'true':>8}",
+    ]
+    return lines + [
+        f"{row['low']:.1f} to {row['high']:.1f}".ljust(14)
+        + f"{row['count']:>8}{row['stated']:>8.3f}{row['share']:>8.3f}"
+        for row in told["bins"]
+    ]
 
 
 def said(value: float | None) -> str:

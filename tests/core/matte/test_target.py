@@ -1,7 +1,7 @@
 import cv2
 import numpy as np
 
-from nostalgin_core.matte.target import corner, merits
+from nostalgin_core.matte.target import Shown, corner, merits, over_arrow
 from nostalgin_core.records import Box
 
 FRAME = Box(0, 0, 300, 400)
@@ -17,25 +17,49 @@ LEFT = _wall((80, 130), (150, 80), (150, 350), (80, 330))
 RIGHT = _wall((151, 80), (240, 140), (240, 325), (151, 350))
 
 
+def _shown(mask: np.ndarray, score: float = 0.8) -> Shown:
+    return Shown(mask, mask, score)
+
+
+BOTH = [_shown(LEFT), _shown(RIGHT)]
+
+
 def test_a_merit_is_a_share() -> None:
-    likely = merits([LEFT, RIGHT], [0.1, 1.0], FRAME, None)
+    likely = merits([_shown(LEFT, 0.1), _shown(RIGHT, 1.0)], FRAME, None, None)
     assert ((likely > 0) & (likely < 1)).all()
 
 
 def test_mirrored_photos_have_mirrored_merits() -> None:
     board = Box(100, 350, 140, 370)
     mirrored = Box(160, 350, 200, 370)
-    one = merits([LEFT, RIGHT], [0.8, 0.8], FRAME, board)
-    other = merits([LEFT[:, ::-1], RIGHT[:, ::-1]], [0.8, 0.8], FRAME, mirrored)
-    np.testing.assert_allclose(one, other, atol=0.02)
+    one = merits(BOTH, FRAME, board, 120.0)
+    turned = [_shown(front.mask[:, ::-1]) for front in BOTH]
+    other = merits(turned, FRAME, mirrored, 179.0)
+    np.testing.assert_allclose(one, other, atol=0.03)
 
 
-def test_the_board_and_the_middle_and_certainty_speak_for_a_front() -> None:
+def test_the_board_and_the_middle_speak_for_a_front() -> None:
     aside, before = Box(240, 350, 280, 370), Box(100, 350, 140, 370)
-    assert merits([LEFT], [0.8], FRAME, before) > merits([LEFT], [0.8], FRAME, aside)
-    assert merits([LEFT], [0.9], FRAME, before) > merits([LEFT], [0.4], FRAME, before)
-    far = np.roll(LEFT, -70, axis=1)
-    assert merits([LEFT], [0.8], FRAME, None) > merits([far], [0.8], FRAME, None)
+    one = [_shown(LEFT)]
+    assert merits(one, FRAME, before, None) > merits(one, FRAME, aside, None)
+    far = [_shown(np.roll(LEFT, -70, axis=1))]
+    assert merits(one, FRAME, None, None) > merits(far, FRAME, None, None)
+
+
+def test_the_front_over_the_arrow_is_meant() -> None:
+    board = Box(110, 350, 190, 370)
+    left = merits(BOTH, FRAME, board, 120.0)
+    right = merits(BOTH, FRAME, board, 180.0)
+    assert left[0] > 0.5 > left[1]
+    assert right[1] > 0.5 > right[0]
+
+
+def test_columns_near_the_arrow_are_shared_out_among_what_stands_there() -> None:
+    over = over_arrow([LEFT, RIGHT], FRAME, None, 151.0)
+    assert over.sum() == 1
+    assert over.min() > 0.3
+    # Below the board, and where no front is, nothing is told.
+    assert over_arrow([LEFT], FRAME, Box(0, 80, 40, 100), 20.0).sum() == 0
 
 
 def test_roofs_rise_towards_a_corner_by_the_lesser_slope() -> None:

@@ -8,6 +8,7 @@ from nostalgin_core.measure.detection import (
     average_precision,
     covered,
     matches,
+    matches_of_kind,
     table,
     together,
 )
@@ -163,3 +164,32 @@ def test_coco_s_own_program_agrees() -> None:
         found = average_precision(together(ours[least]))
         assert 0.05 < found < 0.95
         assert found == pytest.approx(judge.stats[place], abs=1e-9)
+
+
+def _of_kind(
+    asked: list[bool], counted: list[bool], masks: list[np.ndarray]
+) -> Matches:
+    return matches_of_kind(
+        [0.9 - 0.1 * i for i in range(len(masks))],
+        masks,
+        TRUTHS,
+        NOTHING,
+        asked=np.array(asked),
+        counted=np.array(counted),
+        least=0.5,
+    )
+
+
+def test_kinds_ask_for_their_own_truths_and_leave_others_out() -> None:
+    wrong = _square(0, 30)
+    masks = [*TRUTHS[:2], wrong]
+    plain = matches([0.9, 0.8, 0.7], masks, TRUTHS, NOTHING, least=0.5)
+    every = _of_kind([True] * 3, [True] * 3, masks)
+    assert every.hits.tolist() == plain.hits.tolist()
+    first = _of_kind([True, False, False], [False] * 3, masks)
+    assert (first.hits.tolist(), first.truths) == ([True], 1)
+    assert average_precision(first) == 1
+    # Between two kinds that share everything out, no hit and no claim is lost.
+    second = _of_kind([False, True, True], [True] * 3, masks)
+    assert len(first.hits) + len(second.hits) == len(plain.hits)
+    assert first.truths + second.truths == plain.truths

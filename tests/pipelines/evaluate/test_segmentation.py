@@ -145,6 +145,51 @@ def test_only_a_block_is_measured_where_one_is_named(folder: Path) -> None:
         labels.pairs(folder, block="00003")
 
 
+def test_a_front_is_told_by_its_size_its_angle_and_what_went_wrong(
+    folder: Path, tmp_path: Path
+) -> None:
+    wide = (LEFT[0], LEFT[1], RIGHT[2], LEFT[3])
+    one = segmentation.evaluate(
+        labels.pairs(folder),
+        _network(("facade", wide, 0.9), *EVERYTHING[2:]),
+        sheet=tmp_path,
+    )
+    told = one["errors"]
+    assert (told["fronts"], told["claimed"]) == (4, 2)
+    # The wide front overlaps the larger by a half, so that the other is lost in it.
+    assert told["merged"] == {"count": 2, "photos": ["00001_0001", "00002_0001"]}
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["merged-01.png"]
+    page = cv2.imread(str(tmp_path / "merged-01.png"))
+    assert page is not None
+    assert (page == (40, 40, 255)).all(axis=2).any()  # what is wrong is outlined red
+    assert one["facades_by_size"]["above 0.1"]["labelled"] == 4
+    assert one["facades_by_size"]["below 0.03"]["AP50"] is None
+    assert "taken for one with another front" in segmentation_table.text(one)
+
+
+def test_an_oblique_front_counts_among_its_angle() -> None:
+    tilted = {
+        "category": "facade",
+        "polygon": _polygon(LEFT),
+        "quad": [[20, 40], [80, 90], [80, 170], [20, 220]],
+    }
+    straight = tilted | {"quad": _polygon(LEFT)}
+    label = {"id": "x", "objects": [tilted, straight]}
+    views = [one.view_deg for one in labels.truth(label, (H, W)).fronts]
+    assert views[0] is not None
+    assert views[1] is not None
+    assert views[1] < 20
+    assert views[0] > 45
+
+
+def test_what_is_stated_of_targets_is_held_against_the_labels(folder: Path) -> None:
+    told = segmentation.evaluate(labels.pairs(folder), _network(*EVERYTHING))
+    told = told["target_probability"]
+    assert told["photos"] == told["called_rightly"] == told["first_right"] == 2
+    assert sum(row["count"] for row in told["bins"]) == 4
+    assert told["brier"] < 0.25
+
+
 def test_the_report_is_json_and_a_table(folder: Path) -> None:
     report = segmentation.evaluate(labels.pairs(folder), _network(*EVERYTHING))
     assert json.loads(json.dumps(report)) == report
