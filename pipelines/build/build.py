@@ -4,7 +4,7 @@ import copy
 import json
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
@@ -14,7 +14,6 @@ import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
 from apache_beam.runners.runner import PipelineResult
 
-from nostalgin_core.records import Rejection
 from pipelines import site
 from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
@@ -32,10 +31,10 @@ from pipelines.build.report import (
 )
 from pipelines.build.rows import WriteTable
 from pipelines.build.supervisor import Limits
-from pipelines.index import manifest
-from pipelines.index.manifest import Manifest, Unusable
-from pipelines.index.plan import Plan, plan
-from pipelines.index.roots import located
+from pipelines.index import asked, manifest
+from pipelines.index.asked import ASKED, Asked, ask
+from pipelines.index.row import Row
+from pipelines.index.source import Source, Unusable, found
 from pipelines.models import NETWORKS, Models, one_thread
 from pipelines.store import Damaged, Store, Unstored, held, runs
 from pipelines.store.versions import Versions
@@ -100,23 +99,22 @@ def made(
     """Build in a city folder that is ours for the time."""
     ours = options.view_as(CityOptions)
     schemes = [one for one in ours.allow_schemes.split(",") if one]
-    found = manifest.rewrite(store, manifest.read(store))
-    found = located(found, store.root, schemes)
-    for warning in found.warnings:
-        tell("warning", f"warning: {warning}", warning=warning)
+    there = written_anew(store)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORKS:
         models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
     bench = Bench(store, Versions.present(models), models, limits, ours.retry)
-    todo = plan(found.rows, city=ours.city, shard=shard)
-    if shard == (1, 1) and not todo.blocks:
-        raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    asked = " ".join([ours.shard, *schemes])
-    run = runs.run_id(found.sha256, bench.versions, asked)
-    counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
+    words = " ".join([ours.shard, *schemes])
+    run = runs.run_id(there.sha256, bench.versions, words)
+    warn = partial(warned, tell)
+    todo = ask(store, there, run, schemes=schemes, shard=shard, warn=warn)
+    if shard == (1, 1) and not todo.blocks:
+        store.drop(runs.table_path(run, ASKED))
+        raise Unusable(nothing(store, todo))
+    counts = {"photos": todo.photos, "blocks": todo.blocks}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
@@ -124,9 +122,9 @@ def made(
     near = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
-        with near(partial(bench.versions.counts, store.root), len(todo.photos)):
-            result = launched(options, todo, found, bench, run)
-        check(store, run, todo)
+        with near(partial(bench.versions.counts, store.root), todo.photos):
+            result = launched(options, todo, bench)
+        check(store, run, bench.versions)
         done = stages(result)
         note(store, run, options, began, done)
         again += sum(one.get("healed", 0) for one in done.values())
@@ -134,7 +132,7 @@ def made(
         if shard != (1, 1) or not report.blocks:
             return report
         try:
-            return published(bench, found, report, tell, anyway=ours.publish_anyway)
+            return published(bench, todo, report, tell, anyway=ours.publish_anyway)
         except Damaged:
             spoiled = site.damaged(store, run, bench.versions)
             for path in spoiled:
@@ -143,8 +141,26 @@ def made(
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
 
 
+def written_anew(store: Store) -> Source:
+    """Find the manifest; one that was mended by hand is written anew before.
+
+    Raises:
+        Unusable: if it can't be read.
+    """
+    there = found(store)
+    if not there.mended:
+        return there
+    manifest.rewrite(store, manifest.read(store))  # which holds all rows
+    return found(store)
+
+
+def warned(tell: Tell, warning: str) -> None:
+    """Tell what was noticed in the manifest."""
+    tell("warning", f"warning: {warning}", warning=warning)
+
+
 def published(
-    bench: Bench, found: Manifest, report: Report, tell: Tell, *, anyway: bool
+    bench: Bench, todo: Asked, report: Report, tell: Tell, *, anyway: bool
 ) -> Report:
     """Publish a run, unless it shows less than what is published already.
 
@@ -160,7 +176,8 @@ def published(
         )
         tell("held", words, shown=report.shown_share, before=better)
         return replace(report, held=True)
-    site.publish(store, report.run, bench.versions, found.rows, title=found.title)
+    rows = [one for one in asked.rows(store, report.run) if isinstance(one, Row)]
+    site.publish(store, report.run, bench.versions, rows, title=todo.title)
     remember(store, report)
     if "://" in store.root:
         words = f"no site was written: build {store.root} where it is mounted"
@@ -168,16 +185,14 @@ def published(
     return report
 
 
-def nothing(store: Store, rejections: Sequence[Rejection]) -> str:
+def nothing(store: Store, todo: Asked) -> str:
     """Say that there is nothing to build, and what is wrong with the first row."""
-    told = [f"{one.key}: {one.reason}: {one.detail}" for one in rejections[:1]]
-    why = "".join(told) or "it has no rows"
+    one = todo.first
+    why = "it has no rows" if one is None else f"{one.key}: {one.reason}: {one.detail}"
     return f"{store.root}/{manifest.CSV} names no front to build: {why}"
 
 
-def launched(
-    options: PipelineOptions, todo: Plan, found: Manifest, bench: Bench, run: str
-) -> PipelineResult:
+def launched(options: PipelineOptions, todo: Asked, bench: Bench) -> PipelineResult:
     """Run the pipeline to its end.
 
     Raises:
@@ -188,13 +203,13 @@ def launched(
     if runner != embedded.EMBEDDED:
         with cluster.told(runner):
             pipeline = beam.Pipeline(options=options)
-            write(city(pipeline, planned(todo, found), bench), bench, run)
+            write(city(pipeline, todo, bench), bench, todo)
             result = pipeline.run()
             result.wait_until_finish()
         return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
-    write(city(pipeline, planned(todo, found), bench), bench, run)
+    write(city(pipeline, todo, bench), bench, todo)
     try:
         with embedded.on_loopback(), embedded.ending_with_a_worker():
             result = pipeline.run()
@@ -213,11 +228,6 @@ def launched(
     return result
 
 
-def planned(todo: Plan, found: Manifest) -> Plan:
-    """Join what is to be done with what the manifest's rejections tell."""
-    return replace(todo, rejections=(*found.rejections, *todo.rejections))
-
-
 def unstored(store: Store, why: str) -> str:
     """Say that a run ended because what it made could not be kept."""
     why = why.partition(" [while running")[0]  # which Beam adds
@@ -227,9 +237,10 @@ def unstored(store: Store, why: str) -> str:
     )
 
 
-def write(built: Built, bench: Bench, run: str) -> None:
+def write(built: Built, bench: Bench, todo: Asked) -> None:
     """Wire the run's tables."""
     store, of = bench.store, bench.versions
+    parts = runs.parts_of(todo.rows)
     for name, elements, of_each in (
         ("photos", built.photos, rows.photo_rows),
         ("facades", built.facades, rows.FacadeRows(of)),
@@ -237,7 +248,9 @@ def write(built: Built, bench: Bench, run: str) -> None:
         ("blocks", built.blocks, rows.block_rows),
         ("rejections", built.rejections, rows.rejection_rows),
     ):
-        _ = elements | f"Table {name}" >> WriteTable(store, run, name, of_each)
+        _ = elements | f"Table {name}" >> WriteTable(
+            store, todo.run, name, of_each, parts
+        )
 
 
 def note(

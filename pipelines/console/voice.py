@@ -43,7 +43,7 @@ class Voice:
 
 def summed(report: "Report", voice: Voice) -> None:
     """Tell what came of a build."""
-    shown = report.rejections if voice.machine else report.grave()[:MOST_LINES]
+    shown = report.rejections if voice.machine else report.grave(MOST_LINES)
     for one in shown:
         words = f"{one['key']}: {one['stage']}: {one['reason']}: {one['detail']}"
         voice.say("rejected", f"rejected {words}", **one)

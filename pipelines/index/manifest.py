@@ -10,22 +10,27 @@ import contextlib
 import hashlib
 import io
 import time
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from nostalgin_core.records import Front, Rejection
-from pipelines import bounded
-from pipelines.index import comma
+from pipelines.index import comma, source
 from pipelines.index.cells import text
 from pipelines.index.row import CSV, Row, contradictions, usable
+from pipelines.index.source import (
+    CSV_HASH,
+    PARQUET,
+    TITLE,
+    Source,
+    Unusable,
+    optional,
+)
 from pipelines.store import Store, parquet_bytes, tables
 
-PARQUET: Final = "manifest.parquet"
-CSV_HASH: Final = b"nostalgin.csv_sha256"
-TITLE: Final = b"nostalgin.title"
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
 PHOTO: Final = pa.schema(
     [
@@ -37,13 +42,8 @@ PHOTO: Final = pa.schema(
 FRONT: Final = tables.schema(Front)
 SCHEMA: Final = pa.schema([*PHOTO, *FRONT])
 REQUIRED: Final = ("photo", "front_id", "block", "lot")
-BATCH: Final = 1000  # rows
 DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
-
-
-class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
-    """A manifest that can't be read at all, with what to do about it."""
 
 
 @dataclass(frozen=True)
@@ -156,105 +156,33 @@ def natural(text: str | None) -> tuple[int, str]:
 def read(store: Store) -> Manifest:
     """Read the manifest: the CSV if it was mended by hand, else the Parquet file.
 
+    It is held as a whole: a run reads it in parts (`asked`).
+
     Raises:
         Unusable: if there is none, or if what there is makes no sense.
     """
-    mended, parquet = optional(store, CSV), optional(store, PARQUET)
-    title = ""
-    if parquet is not None:
-        table = parsed(parquet, store.root)
-        told = table.schema.metadata or {}
-        title = told.get(TITLE, b"").decode(errors="replace")
-        mark = told.get(CSV_HASH, b"").decode(errors="replace")
-        if mended is None or hashlib.sha256(mended).hexdigest() == mark:
-            rows = table.to_pylist()
-            found = checked(rows, table.column_names, parquet, PARQUET)
-            return replace(found, title=title)
-    if mended is None:
-        raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
-    names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    found = checked(rows, names, mended, CSV)
-    return replace(found, mended=parquet is not None, title=title)
+    there = source.found(store)
+    warnings = noticed(there)
+    cells = (one for batch in there.batches() for one in batch)
+    results = list(checked(cells))
+    rows = tuple(one for one in results if isinstance(one, Row))
+    return Manifest(
+        rows,
+        tuple(one for one in results if isinstance(one, Rejection)),
+        (*warnings, *contradictions(rows)),
+        there.sha256,
+        mended=there.mended,
+        title=there.title,
+    )
 
 
-def optional(store: Store, name: str) -> bytes | None:
-    """Read a file if it is there.
+def noticed(there: Source) -> list[str]:
+    """Name columns that are not known; those that must be there are insisted on.
 
     Raises:
-        Unusable: if it can't be read.
+        Unusable: if one lacks.
     """
-    if not store.exists(name):
-        return None
-    try:
-        return store.read_bytes(name, bounded.TABLE_BYTES)
-    except OSError as problem:
-        why = problem.strerror or str(problem)
-        raise Unusable(
-            f"{store.root}/{name}: {why}; mend the file or move it away"
-        ) from problem
-
-
-def parsed(data: bytes, where: str) -> pa.Table:
-    """Parse the Parquet form."""
-    try:
-        file = pq.ParquetFile(io.BytesIO(data))
-        told = file.metadata
-        groups = [told.row_group(number) for number in range(told.num_row_groups)]
-        bounded.fits(
-            sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
-        )
-        names = file.schema_arrow.names
-        if len(set(names)) < len(names):
-            raise pa.ArrowInvalid("two columns have one name")
-        if told.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
-            raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
-        table = decoded(file)
-        table.validate(full=True)  # or else words may be no UTF-8
-    except (pa.ArrowException, OSError) as problem:
-        raise Unusable(
-            f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
-            f"{CSV} will be read, or run `nostalgin index --force`"
-        ) from problem
-    return table
-
-
-def decoded(file: pq.ParquetFile) -> pa.Table:
-    """Read a table bit by bit: a long word that is repeated takes a file no bytes.
-
-    Raises:
-        OSError: if it has more bytes than are read.
-    """
-    batches, size = [], 0
-    for batch in file.iter_batches(BATCH):
-        plain = [
-            one.dictionary_decode() if pa.types.is_dictionary(one.type) else one
-            for one in batch.columns
-        ]
-        size += sum(one.nbytes for one in plain)
-        bounded.fits(size, bounded.TABLE_BYTES, "")
-        batches.append(plain)
-    if not batches:
-        return file.read()
-    columns = [pa.chunked_array(parts) for parts in zip(*batches, strict=True)]
-    names, told = file.schema_arrow.names, file.schema_arrow.metadata
-    return pa.Table.from_arrays(columns, names).replace_schema_metadata(told)
-
-
-def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
-    """Parse the form that people mend."""
-    try:
-        return comma.parsed(data, ours=True)
-    except comma.NoTable as problem:
-        raise Unusable(f"{where} {problem}") from problem
-
-
-def checked(
-    cells: list[comma.Cells], names: list[str], data: bytes, name: str
-) -> Manifest:
-    """Check every row by itself, so that one bad row spoils no other.
-
-    Rows in which nothing is written are counted, and else ignored.
-    """
+    name, names = there.name, there.names()
     missing = [one for one in REQUIRED if one not in names]
     if missing:
         raise Unusable(
@@ -262,16 +190,14 @@ def checked(
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
     unknown = [one for one in names if one not in SCHEMA.names]
-    warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
-    results = [
-        usable(number, row)
-        for number, row in enumerate(cells, FIRST_ROW)
-        if not comma.blank(row)
-    ]
-    rows = tuple(one for one in results if isinstance(one, Row))
-    return Manifest(
-        rows,
-        tuple(one for one in results if isinstance(one, Rejection)),
-        (*warnings, *contradictions(rows)),
-        hashlib.sha256(data).hexdigest(),
-    )
+    return [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
+
+
+def checked(cells: Iterable[comma.Cells]) -> Iterator[Row | Rejection]:
+    """Check every row by itself, so that one bad row spoils no other.
+
+    Rows in which nothing is written are counted, and else ignored.
+    """
+    for number, row in enumerate(cells, FIRST_ROW):
+        if not comma.blank(row):
+            yield usable(number, row)

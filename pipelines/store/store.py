@@ -11,11 +11,12 @@ damaged later is found out when it is read (`seal`). A rejection is an artifact 
 
 import contextlib
 import errno
+import functools
 import hashlib
 import io
 import os
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -74,6 +75,17 @@ def durable(path: Path, data: bytes) -> None:
         os.fsync(file.fileno())
 
 
+@functools.lru_cache(maxsize=64)
+def reached(where: str, process: int) -> tuple[pafs.FileSystem, str]:
+    """Find the file system of a path or a URI, once in each process.
+
+    An object store's has connections and threads, which no fork may share.
+    """
+    del process
+    system, path = pafs.FileSystem.from_uri(where)
+    return system, path.rstrip("/")
+
+
 @dataclass(frozen=True)
 class Store:
     """A city folder, on this machine or wherever Arrow's file systems reach."""
@@ -92,7 +104,7 @@ class Store:
         local = "://" not in self.root
         where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
         try:
-            return pafs.FileSystem.from_uri(where)
+            return reached(where, os.getpid())
         except pa.ArrowInvalid as problem:
             raise OSError(errno.EINVAL, str(problem), self.root) from problem
 
@@ -139,6 +151,14 @@ class Store:
         at = pafs.FileSelector(f"{root}/{folder}", allow_not_found=True)
         return sorted(one.base_name for one in system.get_file_info(at))
 
+    def below(self, folder: str) -> list[str]:
+        """Name all files below a folder by one listing, relative to it."""
+        system, root = self._open()
+        top = f"{root}/{folder}"
+        at = pafs.FileSelector(top, allow_not_found=True, recursive=True)
+        found = (one.path for one in system.get_file_info(at) if one.is_file)
+        return sorted(path[len(top) + 1 :] for path in found)
+
     def drop(self, name: str) -> None:
         """Remove a file if it is there."""
         system, root = self._open()
@@ -157,6 +177,30 @@ class Store:
             Damaged: if it is not what was written.
         """
         return self._read(name, lambda artifact: seal.read(artifact, columns))
+
+    def write_groups(
+        self, name: str, schema: pa.Schema, groups: Iterable[pa.Table]
+    ) -> None:
+        """Write tables as the row groups of one file, holding one at a time."""
+        self.write_bytes(name, seal.sealed_groups(schema, groups, name))
+
+    def read_groups(
+        self, name: str, span: tuple[int, int] | None = None
+    ) -> Iterator[pa.Table]:
+        """Read row groups one by one: all, or from a first to before another.
+
+        Raises:
+            FileNotFoundError: if there is no such file.
+            Damaged: if it is not what was written.
+        """
+        system, root = self._open()
+        with system.open_input_file(f"{root}/{name}") as file:
+            try:
+                artifact = seal.opened(file, name)
+                for number in range(*(span or (0, artifact.num_row_groups))):
+                    yield seal.read(artifact, groups=[number])
+            except Damaged as problem:
+                raise Damaged(problem.why, name) from problem
 
     def verdict(self, name: str) -> Rejection | bool:
         """Tell what an artifact holds: True if made, its rejection, False if absent.

@@ -152,7 +152,11 @@ class Versions:
 
     def path(self, stage: str, key: str) -> str:
         """Name an artifact, relative to the city folder."""
-        return f"{ARTIFACTS}/{stage}/{getattr(self, stage)}/{key[:2]}/{key}.parquet"
+        return f"{self.folder(stage)}/{key[:2]}/{key}.parquet"
+
+    def folder(self, stage: str) -> str:
+        """Name the folder of a stage's artifacts, relative to the city folder."""
+        return f"{ARTIFACTS}/{stage}/{getattr(self, stage)}"
 
     def segment_key(self, sha256: str) -> str:
         """Key what the network found in a photo."""
