@@ -1,7 +1,8 @@
 """One build from its manifest to its published run."""
 
+import contextlib
 import copy
-import json
+import os
 import re
 import time
 from collections.abc import Callable
@@ -20,6 +21,7 @@ from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
+from pipelines.build.noted import note, stages
 from pipelines.build.options import CityOptions, part
 from pipelines.build.report import (
     Lost,
@@ -36,7 +38,7 @@ from pipelines.index.asked import ASKED, Asked, ask
 from pipelines.index.row import Row
 from pipelines.index.source import Source, Unusable, found
 from pipelines.models import NETWORKS, Models, one_thread
-from pipelines.store import Damaged, Store, Unstored, held, runs
+from pipelines.store import Damaged, Store, Unstored, held, pack, runs
 from pipelines.store.versions import Versions
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
@@ -104,7 +106,8 @@ def made(
     for network in NETWORKS:
         models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
-    bench = Bench(store, Versions.present(models), models, limits, ours.retry)
+    near = replace(store, era=f"{os.getpid()}.{time.time_ns()}")
+    bench = Bench(near, Versions.present(models), models, limits, ours.retry)
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
     words = " ".join([ours.shard, *schemes])
@@ -119,10 +122,10 @@ def made(
     tell("start", words, run=run, **counts)
     began = time.time()
     note(store, run, options, began)  # a folder that can't be written to is told now
-    near = watch if "://" not in store.root else unwatched
+    watched = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
-        with near(partial(bench.versions.counts, store.root), todo.photos):
+        with watched(partial(bench.versions.counts, store.root), todo.photos):
             result = launched(options, todo, bench)
         check(store, run, bench.versions)
         done = stages(result)
@@ -132,12 +135,16 @@ def made(
         if shard != (1, 1) or not report.blocks:
             return report
         try:
-            return published(bench, todo, report, tell, anyway=ours.publish_anyway)
+            anyway = ours.publish_anyway
+            shown = published(store, bench.versions, todo, report, tell, anyway=anyway)
         except Damaged:
             spoiled = site.damaged(store, run, bench.versions)
             for path in spoiled:
                 store.drop(path)
             again += len(spoiled)
+        else:
+            tidied(store, bench.versions)
+            return shown
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
 
 
@@ -159,15 +166,31 @@ def warned(tell: Tell, warning: str) -> None:
     tell("warning", f"warning: {warning}", warning=warning)
 
 
+def tidied(store: Store, versions: Versions) -> None:
+    """Pack the artifacts that lie about: what is done, the next run knows by a listing.
+
+    A disk that is full keeps them as they are.
+    """
+    with contextlib.suppress(OSError):
+        for stage in vars(versions):
+            pack(store, versions.folder(stage))
+
+
 def published(
-    bench: Bench, todo: Asked, report: Report, tell: Tell, *, anyway: bool
+    store: Store,
+    versions: Versions,
+    todo: Asked,
+    report: Report,
+    tell: Tell,
+    *,
+    anyway: bool,
 ) -> Report:
     """Publish a run, unless it shows less than what is published already.
 
     Raises:
         Damaged: if an artifact is.
     """
-    store, better = bench.store, shown_before(bench.store)
+    better = shown_before(store)
     if report.shown_share < min(LEAST_SHOWN, better) and not anyway:
         words = (
             f"the site stays as it is: it shows {better:.0%} of its photos, this run "
@@ -177,7 +200,7 @@ def published(
         tell("held", words, shown=report.shown_share, before=better)
         return replace(report, held=True)
     rows = [one for one in asked.rows(store, report.run) if isinstance(one, Row)]
-    site.publish(store, report.run, bench.versions, rows, title=todo.title)
+    site.publish(store, report.run, versions, rows, title=todo.title)
     remember(store, report)
     if "://" in store.root:
         words = f"no site was written: build {store.root} where it is mounted"
@@ -251,39 +274,3 @@ def write(built: Built, bench: Bench, todo: Asked) -> None:
         _ = elements | f"Table {name}" >> WriteTable(
             store, todo.run, name, of_each, parts
         )
-
-
-def note(
-    store: Store,
-    run: str,
-    options: PipelineOptions,
-    began: float,
-    done: dict[str, dict[str, int]] | None = None,
-) -> None:
-    """Write when the run was and what it took: the only file with clock times.
-
-    Until the run is done it tells only when it began.
-    """
-    given = options.get_all_options(drop_default=True)
-    told: dict[str, Any] = {
-        "run": run,
-        "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
-        "options": {name: str(value) for name, value in given.items()},
-    }
-    if done is not None:
-        told |= {"seconds": round(time.time() - began, 1), "stages": done}
-    text = json.dumps(told, indent=1, sort_keys=True) + "\n"
-    store.write_bytes(f"runs/{run}/run.json", text.encode())
-
-
-def stages(result: PipelineResult) -> dict[str, dict[str, int]]:
-    """Read the counters and times of all stages."""
-    metrics = result.metrics().query()
-    told: dict[str, dict[str, int]] = {}
-    for one in metrics["counters"]:
-        mine = told.setdefault(one.key.metric.namespace, {})
-        mine[one.key.metric.name] = mine.get(one.key.metric.name, 0) + one.result
-    for one in metrics["distributions"]:
-        mine = told.setdefault(one.key.metric.namespace, {})
-        mine["milliseconds"] = mine.get("milliseconds", 0) + one.result.sum
-    return told

@@ -130,10 +130,9 @@ def check(store: Store, run: str, versions: Versions) -> None:
             "build again; what was done is kept"
         )
     for name, column, stage in MADE:
-        folder = versions.folder(stage)
-        kept = {f"{folder}/{one}" for one in store.below(folder)}
+        kept = store.listed(versions.folder(stage))
         for path in paths(store, run, name, column):
-            if path not in kept:
+            if not kept.has(path.rpartition("/")[2].removesuffix(".parquet")):
                 raise Lost(f"{store.root} lost {path}: build again; it is made anew")
 
 

@@ -14,7 +14,7 @@ from typing import Final
 from nostalgin_core.records import Rejection
 from pipelines.index.manifest import Manifest
 from pipelines.index.row import Row
-from pipelines.store import Store
+from pipelines.store import SECRETIVE, Store, secretive
 
 LOCAL: Final = "file"
 SHOWN: Final = 80  # letters of a root in a message
@@ -37,6 +37,8 @@ def screened(
     """Find one row's photo; what is refused already stays so."""
     if isinstance(row, Rejection):
         return row
+    if secretive(row.root):
+        return Rejection(row.key, "manifest", "credentials in its root", SECRETIVE)
     if "://" in row.root:
         allowed = {LOCAL, scheme_of(city) or LOCAL, *(s.casefold() for s in schemes)}
         if scheme_of(row.root) not in allowed:
@@ -91,5 +93,6 @@ def rooted(root: str, city: str) -> str:
         return root
     if scheme_of(city):
         scheme, _, path = city.partition("://")
-        return f"{scheme}://{posixpath.normpath(f'{path}/{root}')}"
+        path, mark, asked = path.partition("?")
+        return f"{scheme}://{posixpath.normpath(f'{path}/{root}')}{mark}{asked}"
     return os.path.normpath(os.path.join(city, root))  # noqa: PTH118
