@@ -121,7 +121,9 @@ def made(
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
-    note(store, run, options, began)  # a folder that can't be written to is told now
+    note(
+        store, run, bench.versions, options, began
+    )  # a folder that can't be written to is told now
     watched = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
@@ -129,7 +131,7 @@ def made(
             result = launched(options, todo, bench)
         check(store, run, bench.versions)
         done = stages(result)
-        note(store, run, options, began, done)
+        note(store, run, bench.versions, options, began, done=done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
         if shard != (1, 1) or not report.blocks:

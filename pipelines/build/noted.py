@@ -9,6 +9,7 @@ from apache_beam.options.pipeline_options import PipelineOptions
 from apache_beam.runners.runner import PipelineResult
 
 from pipelines.store import Store
+from pipelines.store.versions import Versions
 
 SECRET: Final = re.compile("key|secret|token|passw|credential")  # in options' names
 
@@ -16,8 +17,10 @@ SECRET: Final = re.compile("key|secret|token|passw|credential")  # in options' n
 def note(
     store: Store,
     run: str,
+    versions: Versions,
     options: PipelineOptions,
     began: float,
+    *,
     done: dict[str, dict[str, int]] | None = None,
 ) -> None:
     """Write when the run was and what it took: the only file with clock times.
@@ -27,6 +30,7 @@ def note(
     given = options.get_all_options(drop_default=True)
     told: dict[str, Any] = {
         "run": run,
+        "versions": vars(versions),
         "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
         "options": {
             name: "(not told)" if SECRET.search(name) else str(value)

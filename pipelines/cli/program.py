@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import typer
 
-from pipelines.cli import build, demo, explain, index, view, workers
+from pipelines.cli import build, demo, explain, gc, index, view, workers
 from pipelines.console import opened_streams
 from pipelines.evaluate import commands
 
@@ -36,6 +36,7 @@ app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
 )
 app.command("view", epilog=view.EXAMPLES)(view.view_command)
 app.command("demo", epilog=demo.EXAMPLES, context_settings=TO_BEAM)(demo.demo_command)
+app.command("gc", epilog=gc.EXAMPLES)(gc.gc_command)
 app.command("workers", epilog=workers.EXAMPLES)(workers.workers_command)
 app.add_typer(commands.app, name="evaluate")
 

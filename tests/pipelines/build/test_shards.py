@@ -16,9 +16,8 @@ from tests.pipelines.s3 import bucket
 
 __all__ = ["bucket"]
 
-SHARDS = (
-    2  # of two blocks; by their names the first part holds one, the second the other
-)
+# The first has three photos, the second one, the last none.
+SHARDS = (3, 1, 2)
 WAIT_S = 200.0
 
 
