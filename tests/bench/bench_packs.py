@@ -1,10 +1,11 @@
-"""What a build leaves on disk, as single files and packed, and what a million rows take.
+"""What a build leaves on disk, single and packed, and what a million rows take.
 
     python tests/bench/bench_packs.py [city, to be copied] [rows, default 100000]
 
 Without a city, artifacts of the sizes that block 993's had stand for one.
 """
 
+import os
 import resource
 import shutil
 import sys
@@ -17,6 +18,7 @@ import numpy as np
 import pyarrow as pa
 
 from nostalgin_core.records import Front
+from pipelines.build.report import wanted
 from pipelines.index import manifest, source
 from pipelines.index.asked import ask
 from pipelines.store import Store, packing
@@ -88,11 +90,11 @@ def packs(city: str) -> None:
     )
 
 
-def rows(count: int) -> None:
-    """Ask for many rows, and print what it takes to check and write them."""
-    with tempfile.TemporaryDirectory() as top:
-        store = Store(top)
-        cells = (
+def listed(store: Store, count: int) -> None:
+    """Write a manifest of so many rows, in a process that takes its memory with it."""
+    child = os.fork()
+    if not child:
+        cells = [
             manifest.row_of(
                 f"{n}.jpg",
                 replace(FRONT, front_id=str(n), block=str(n // 50), rank=n % 50),
@@ -100,22 +102,36 @@ def rows(count: int) -> None:
                 credit="",
             )
             for n in range(count)
-        )
-        manifest.write(store, list(cells))
-        there = source.found(store)
-        held, began = resource.getrusage(resource.RUSAGE_SELF), time.process_time()
-        todo = ask(store, there, "run")
-        spent = time.process_time() - began
-        after = resource.getrusage(resource.RUSAGE_SELF)
-        more = (after.ru_maxrss - held.ru_maxrss) / 1024
+        ]
+        manifest.write(store, cells)
+        os._exit(0)
+    os.waitpid(child, 0)
+
+
+def rows(count: int) -> None:
+    """Ask for many rows, and print what it takes to check and write them."""
+    with tempfile.TemporaryDirectory() as top:
+        store = Store(top)
+        listed(store, count)
+        before, began = peak_mb(), time.process_time()
+        todo = ask(store, source.found(store), "run")
+        spent, pieces = time.process_time() - began, len(todo.pieces())
         print(
-            f"{count:,} rows asked for: {spent:.1f} CPU s, {more:.0f} MB more at the "
-            f"peak than to write the manifest; {todo.photos:,} photos in "
-            f"{len(todo.pieces())} pieces"
+            f"{count:,} rows asked for: {spent:.1f} CPU s, {peak_mb() - before:.0f} MB "
+            f"more at the peak; {todo.photos:,} photos in {pieces} pieces"
         )
+        began = time.process_time()
+        wanted(store, "run")
+        spent = time.process_time() - began
+        print(f"and read for the check: {spent:.1f} CPU s, {peak_mb() - before:.0f} MB")
+
+
+def peak_mb() -> float:
+    """Tell the most memory that this process has held."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 if __name__ == "__main__":
     words = sys.argv[1:]
-    packs(words[0] if words and not words[0].isdecimal() else "")
     rows(int(words[-1]) if words and words[-1].isdecimal() else 100_000)
+    packs(words[0] if words and not words[0].isdecimal() else "")

@@ -18,7 +18,9 @@ __all__ = ["bucket"]
 
 # The first has three photos, the second one, the last none.
 SHARDS = (3, 1, 2)
-WAIT_S = 200.0
+WAIT_S = 300.0
+
+pytestmark = pytest.mark.timeout(900)  # five processes start, two at a time
 
 
 @pytest.fixture(scope="module")
