@@ -3,6 +3,7 @@
 # make check  ruff, pyright, import-linter
 # make fuzz   thousands of damaged bytes for every reader; some minutes
 # make audit  known holes in what this is built on; it asks a service elsewhere
+# make prism  Beam's portable runner, built by Go from its module proxy; two minutes
 # make bench  benchmarks, as ratios against named baselines
 
 PYTHON ?= python3
@@ -15,13 +16,17 @@ VIEWER := pipelines/site/viewer_dist/index.html
 VIEWER_SOURCES := $(shell find viewer -type f -not -path '*/node_modules/*' -not -path '*/dist/*' 2>/dev/null)
 CITY ?= demo-city
 EXAMPLES ?= 2000
+GO ?= go
+# As pyproject.toml has it.
+BEAM := 2.77.0
 
-.PHONY: demo test check fuzz audit bench viewer clean
+.PHONY: demo test check fuzz audit prism bench viewer clean
 
 demo: $(VENV)/.run $(VIEWER)
 	$(BIN)/nostalgin demo -o $(CITY)
 
 test: $(VENV)/.test $(VIEWER) chromium
+	@command -v $(GO) >/dev/null && $(MAKE) prism || echo "no Go: Prism's test is skipped"
 	$(BIN)/pytest -n 2 --dist worksteal
 	cd viewer && npm test
 
@@ -36,6 +41,11 @@ fuzz: $(VENV)/.test
 
 audit: $(VENV)/.test
 	$(BIN)/python deploy/audit.py
+
+prism: $(BIN)/prism
+
+$(BIN)/prism: | $(UV)
+	GOBIN=$(CURDIR)/$(BIN) $(GO) install github.com/apache/beam/sdks/v2/go/cmd/prism@v$(BEAM)
 
 bench: $(VENV)/.test
 	for f in tests/bench/bench_*.py; do $(BIN)/python $$f || exit 1; done

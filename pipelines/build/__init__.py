@@ -6,7 +6,8 @@ A stage of the core is a transform here; whom to tell, it is given. Open `city` 
 
 from pipelines.build.build import build
 from pipelines.build.cluster import Unrun
+from pipelines.build.external import serve
 from pipelines.build.options import options
 from pipelines.build.report import Lost, Report
 
-__all__ = ["Lost", "Report", "Unrun", "build", "options"]
+__all__ = ["Lost", "Report", "Unrun", "build", "options", "serve"]

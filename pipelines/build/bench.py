@@ -60,7 +60,7 @@ class Bench:
         """Read an artifact, or some columns; a damaged one is made `again` first."""
         try:
             return self.store.read_table(path, columns)
-        except Damaged:
+        except (Damaged, FileNotFoundError):  # the latter of a pack that is
             self.drop(path)
             again()
             return self.store.read_table(path, columns)

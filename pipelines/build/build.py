@@ -1,10 +1,11 @@
 """One build from its manifest to its published run."""
 
+import contextlib
 import copy
-import json
+import os
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
@@ -14,14 +15,14 @@ import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
 from apache_beam.runners.runner import PipelineResult
 
-from nostalgin_core.records import Rejection
 from pipelines import index, site
 from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
-from pipelines.build.corrected import directed, mended
+from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
+from pipelines.build.noted import note, stages
 from pipelines.build.options import CityOptions, part
 from pipelines.build.report import (
     Lost,
@@ -33,12 +34,12 @@ from pipelines.build.report import (
 )
 from pipelines.build.rows import WriteTable
 from pipelines.build.supervisor import Limits
-from pipelines.index import manifest
-from pipelines.index.manifest import Manifest, Unusable
-from pipelines.index.plan import Plan, plan
-from pipelines.index.roots import located
+from pipelines.index import asked, manifest
+from pipelines.index.asked import ASKED, Asked, ask
+from pipelines.index.row import Row
+from pipelines.index.source import Source, Unusable, found
 from pipelines.models import NETWORKS, Models, one_thread
-from pipelines.store import Damaged, Store, Unstored, held, runs
+from pipelines.store import Damaged, Store, Unstored, held, pack, runs
 from pipelines.store.versions import Versions
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
@@ -101,57 +102,101 @@ def made(
     """Build in a city folder that is ours for the time."""
     ours = options.view_as(CityOptions)
     schemes = [one for one in ours.allow_schemes.split(",") if one]
-    found = manifest.rewrite(store, manifest.read(store))
-    found = located(found, store.root, schemes)
-    found, made_so = mended(store, found)
-    names = {row.front.block for row in found.rows if row.front is not None}
-    anchors = index.load(store, sorted(names, key=manifest.natural))
-    for warning in (*found.warnings, *anchors.warnings):
-        tell("warning", f"warning: {warning}", warning=warning)
+    there = written_anew(store)
+    mended = corrected(store, there)
+    anchors = anchored(store, there)
+    warn = partial(warned, tell)
+    for line in anchors.warnings:
+        warn(line)
     models = Models(ours.models) if ours.models else Models()
     for network in NETWORKS:
         models.load(network)  # a spoiled file is told here, not by every photo
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
+    near = replace(store, era=f"{os.getpid()}.{time.time_ns()}")
     form = "png" if ours.no_webp else "webp"
-    bench = Bench(store, Versions.present(models), models, limits, ours.retry, form)
-    todo = directed(plan(found.rows, city=ours.city, shard=shard), made_so)
-    if shard == (1, 1) and not todo.blocks:
-        raise Unusable(nothing(store, (*found.rejections, *todo.rejections)))
+    bench = Bench(near, Versions.present(models), models, limits, ours.retry, form)
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    asked = " ".join([ours.shard, *schemes, *(["png"] if ours.no_webp else [])])
-    run = runs.run_id(found.sha256 + anchors.sha256, bench.versions, asked)
-    counts = {"photos": len(todo.photos), "blocks": len(todo.blocks)}
+    sources = there.sha256 + mended.sha256 + anchors.sha256
+    words = " ".join([ours.shard, *schemes, *(["png"] if ours.no_webp else [])])
+    run = runs.run_id(sources, bench.versions, words)
+    own = {"schemes": schemes, "shard": shard, "warn": warn}
+    todo = ask(store, there, run, results=mended.rows, **own)
+    if shard == (1, 1) and not todo.blocks:
+        store.drop(runs.table_path(run, ASKED))
+        raise Unusable(nothing(store, todo))
+    counts = {"photos": todo.photos, "blocks": todo.blocks}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
-    note(bench, run, options, began)  # a folder that can't be written to is told now
-    near = watch if "://" not in store.root else unwatched
+    noted = partial(note, store, run, bench.versions, options, began)
+    noted()  # a folder that can't be written to is told now
+    watched = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
-        with near(partial(bench.versions.counts, store.root), len(todo.photos)):
-            result = launched(options, todo, found, bench, run)
-        check(store, run, todo)
+        with watched(partial(bench.versions.counts, store.root), todo.photos):
+            result = launched(options, todo, bench, mended)
+        check(store, run, bench.versions)
         done = stages(result)
-        note(bench, run, options, began, done)
+        noted(done=done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
         if shard != (1, 1) or not report.blocks:
             return report
         try:
             anyway = ours.publish_anyway
-            return published(bench, found, anchors, report, tell, anyway=anyway)
+            shown = published(bench, todo, anchors, report, tell, anyway=anyway)
         except Damaged:
             spoiled = site.damaged(store, run, bench.versions)
             for path in spoiled:
                 store.drop(path)
             again += len(spoiled)
+        else:
+            tidied(store, bench.versions)
+            return shown
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
+
+
+def written_anew(store: Store) -> Source:
+    """Find the manifest; one that was mended by hand is written anew before.
+
+    Raises:
+        Unusable: if it can't be read.
+    """
+    there = found(store)
+    if not there.mended:
+        return there
+    manifest.rewrite(store, manifest.read(store))  # which holds all rows
+    return found(store)
+
+
+def anchored(store: Store, there: Source) -> index.Anchors:
+    """Read where blocks lie, if the city folder tells it of any."""
+    blocks: set[str] = set()
+    if index.told_of_places(store):
+        cells = (one for batch in there.batches() for one in batch)
+        blocks = {str(one.get("block") or "").strip() for one in cells} - {""}
+    return index.load(store, sorted(blocks, key=manifest.natural))
+
+
+def warned(tell: Tell, warning: str) -> None:
+    """Tell what was noticed in the manifest."""
+    tell("warning", f"warning: {warning}", warning=warning)
+
+
+def tidied(store: Store, versions: Versions) -> None:
+    """Pack the artifacts that lie about: what is done, the next run knows by a listing.
+
+    A disk that is full keeps them as they are.
+    """
+    with contextlib.suppress(OSError):
+        for stage in vars(versions):
+            pack(store, versions.folder(stage))
 
 
 def published(
     bench: Bench,
-    found: Manifest,
+    todo: Asked,
     anchors: index.Anchors,
     report: Report,
     tell: Tell,
@@ -163,7 +208,8 @@ def published(
     Raises:
         Damaged: if an artifact is.
     """
-    store, better = bench.store, shown_before(bench.store)
+    store = bench.store
+    better = shown_before(store)
     if report.shown_share < min(LEAST_SHOWN, better) and not anyway:
         words = (
             f"the site stays as it is: it shows {better:.0%} of its photos, this run "
@@ -172,10 +218,10 @@ def published(
         )
         tell("held", words, shown=report.shown_share, before=better)
         return replace(report, held=True)
-    told = {"title": found.title, "anchors": anchors}
-    notes = site.publish(store, report.run, bench.versions, found.rows, **told)
-    for doubt in notes:
-        tell("warning", f"warning: {doubt}", warning=doubt)
+    rows = [one for one in asked.rows(store, report.run) if isinstance(one, Row)]
+    told = {"title": todo.title, "anchors": anchors}
+    for doubt in site.publish(store, report.run, bench.versions, rows, **told):
+        warned(tell, doubt)
     remember(store, report)
     if "://" in store.root:
         words = f"no site was written: build {store.root} where it is mounted"
@@ -183,15 +229,15 @@ def published(
     return report
 
 
-def nothing(store: Store, rejections: Sequence[Rejection]) -> str:
+def nothing(store: Store, todo: Asked) -> str:
     """Say that there is nothing to build, and what is wrong with the first row."""
-    told = [f"{one.key}: {one.reason}: {one.detail}" for one in rejections[:1]]
-    why = "".join(told) or "it has no rows"
+    one = todo.first
+    why = "it has no rows" if one is None else f"{one.key}: {one.reason}: {one.detail}"
     return f"{store.root}/{manifest.CSV} names no front to build: {why}"
 
 
 def launched(
-    options: PipelineOptions, todo: Plan, found: Manifest, bench: Bench, run: str
+    options: PipelineOptions, todo: Asked, bench: Bench, mended: Corrected
 ) -> PipelineResult:
     """Run the pipeline to its end.
 
@@ -203,13 +249,13 @@ def launched(
     if runner != embedded.EMBEDDED:
         with cluster.told(runner):
             pipeline = beam.Pipeline(options=options)
-            write(city(pipeline, planned(todo, found), bench), bench, run)
+            write(city(pipeline, todo, bench, mended.directions()), bench, todo)
             result = pipeline.run()
             result.wait_until_finish()
         return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
-    write(city(pipeline, planned(todo, found), bench), bench, run)
+    write(city(pipeline, todo, bench, mended.directions()), bench, todo)
     try:
         with embedded.on_loopback(), embedded.ending_with_a_worker():
             result = pipeline.run()
@@ -228,11 +274,6 @@ def launched(
     return result
 
 
-def planned(todo: Plan, found: Manifest) -> Plan:
-    """Join what is to be done with what the manifest's rejections tell."""
-    return replace(todo, rejections=(*found.rejections, *todo.rejections))
-
-
 def unstored(store: Store, why: str) -> str:
     """Say that a run ended because what it made could not be kept."""
     why = why.partition(" [while running")[0]  # which Beam adds
@@ -242,9 +283,10 @@ def unstored(store: Store, why: str) -> str:
     )
 
 
-def write(built: Built, bench: Bench, run: str) -> None:
+def write(built: Built, bench: Bench, todo: Asked) -> None:
     """Wire the run's tables."""
     store, of = bench.store, bench.versions
+    parts = runs.parts_of(todo.rows)
     for name, elements, of_each in (
         ("photos", built.photos, rows.photo_rows),
         ("facades", built.facades, rows.FacadeRows(of)),
@@ -252,43 +294,6 @@ def write(built: Built, bench: Bench, run: str) -> None:
         ("blocks", built.blocks, rows.block_rows),
         ("rejections", built.rejections, rows.rejection_rows),
     ):
-        _ = elements | f"Table {name}" >> WriteTable(store, run, name, of_each)
-
-
-def note(
-    bench: Bench,
-    run: str,
-    options: PipelineOptions,
-    began: float,
-    done: dict[str, dict[str, int]] | None = None,
-) -> None:
-    """Write when the run was, what made it, and what it took.
-
-    It is the only file with clock times.
-
-    Until the run is done it tells only when it began.
-    """
-    given = options.get_all_options(drop_default=True)
-    told: dict[str, Any] = {
-        "run": run,
-        "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)),
-        "options": {name: str(value) for name, value in given.items()},
-        "versions": vars(bench.versions),
-    }
-    if done is not None:
-        told |= {"seconds": round(time.time() - began, 1), "stages": done}
-    text = json.dumps(told, indent=1, sort_keys=True) + "\n"
-    bench.store.write_bytes(f"runs/{run}/run.json", text.encode())
-
-
-def stages(result: PipelineResult) -> dict[str, dict[str, int]]:
-    """Read the counters and times of all stages."""
-    metrics = result.metrics().query()
-    told: dict[str, dict[str, int]] = {}
-    for one in metrics["counters"]:
-        mine = told.setdefault(one.key.metric.namespace, {})
-        mine[one.key.metric.name] = mine.get(one.key.metric.name, 0) + one.result
-    for one in metrics["distributions"]:
-        mine = told.setdefault(one.key.metric.namespace, {})
-        mine["milliseconds"] = mine.get("milliseconds", 0) + one.result.sum
-    return told
+        _ = elements | f"Table {name}" >> WriteTable(
+            store, todo.run, name, of_each, parts
+        )

@@ -1,7 +1,8 @@
 """The pipeline of a city: from photos to facades, from facades to blocks.
 
+    rows --Plan--> photos, and blocks with their fronts
     photos --Read--Segment--Matte--Rectify--> facades (numbers)
-    facades + fronts --GroupByKey block--Assign--> cuboids, and which facades they wear
+    facades + blocks --GroupByKey block--Assign--> cuboids, and which facades they wear
     worn facades --Inpaint--> finished
     finished + cuboids --GroupByKey block--Model--> GLB
 
@@ -16,6 +17,8 @@ from apache_beam import pvalue
 
 from pipelines.build.bench import Bench
 from pipelines.build.blocks import Assign, Model
+from pipelines.build.corrected import Corrected
+from pipelines.build.planned import Plan
 from pipelines.build.stages import (
     FacadeRef,
     Inpaint,
@@ -25,7 +28,7 @@ from pipelines.build.stages import (
     Segment,
     Thumbnail,
 )
-from pipelines.index.plan import Plan
+from pipelines.index.asked import Asked
 
 
 class Built(NamedTuple):
@@ -38,24 +41,19 @@ class Built(NamedTuple):
     rejections: pvalue.PCollection
 
 
-def city(pipeline: beam.Pipeline, plan: Plan, bench: Bench) -> Built:
+def city(
+    pipeline: beam.Pipeline, asked: Asked, bench: Bench, mended: Corrected | None = None
+) -> Built:
     """Wire the whole way from photos to blocks."""
-    read = (
-        pipeline
-        | "Photos" >> beam.Create(plan.photos, reshuffle=False)
-        | "Spread photos" >> beam.Reshuffle()
-        | Read()
-    )
+    planned: Any = pipeline | Plan(bench.store, asked, mended or Corrected())
+    read = planned.photos | Read()
     small = read.made | Thumbnail(bench)
     found = read.made | Segment(bench)
     matted = found.made | Matte(bench)
     facades = matted.made | Rectify(bench)
-    tasks = pipeline | "Blocks" >> beam.Create(
-        [(one.block, one) for one in plan.blocks]
-    )
     by_block = facades.made | "By block" >> beam.FlatMap(keyed)
     placed = (
-        {"task": tasks, "facades": by_block}
+        {"task": planned.blocks, "facades": by_block}
         | "Group facades" >> beam.CoGroupByKey()
         | Assign(bench)
     )
@@ -77,8 +75,7 @@ def city(pipeline: beam.Pipeline, plan: Plan, bench: Bench) -> Built:
     )
     stages = (read, small, found, matted, facades, placed, finished, blocks)
     rejected = tuple(stage.rejected for stage in stages)
-    known = pipeline | "Known" >> beam.Create(plan.rejections)
-    rejections = (*rejected, known) | "Rejections" >> beam.Flatten()
+    rejections = (*rejected, planned.rejections) | "Rejections" >> beam.Flatten()
     return Built(read.made, facades.made, placed.made, blocks.made, rejections)
 
 

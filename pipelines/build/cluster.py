@@ -5,9 +5,12 @@ package only where it is used, deep in a traceback.
 """
 
 import importlib
+import shutil
 import socket
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Final
 
 import grpc
@@ -39,12 +42,16 @@ class Unrun(RuntimeError):  # noqa: N818 - it reads as what it is about
     """A cluster that did not answer, or gave up."""
 
 
-def equipped(runner: str) -> None:
+def equipped(runner: str, prism: str) -> None:
     """Insist on the packages that a runner needs beside Beam.
 
     Raises:
         ValueError: if one lacks.
     """
+    if "prism" in runner.casefold() and not prism:
+        raise ValueError(
+            f"--runner {runner}: run `make prism`, or name it by --prism_location"
+        )
     if "dataflow" not in runner.casefold():
         return
     try:
@@ -81,6 +88,16 @@ def reached(options: PipelineOptions) -> None:
 def dead(option: str, where: str, why: str) -> str:
     """Tell that nobody answers, and what to do."""
     return f"{option}={where}: {why}; start it there, or mend the address"
+
+
+def prism(given: str | None) -> str:
+    """Find Prism: as it is told, beside this interpreter, or on the path.
+
+    Beam itself would fetch it from elsewhere.
+    """
+    beside = Path(sys.executable).with_name("prism")
+    near = str(beside) if beside.is_file() else ""
+    return given or near or shutil.which("prism") or ""
 
 
 @contextmanager

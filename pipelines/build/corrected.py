@@ -1,38 +1,41 @@
 """A build's work as people have corrected it, and what that is a hash of."""
 
-import hashlib
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 
+from nostalgin_core.records import Rejection
 from pipelines import corrections
-from pipelines.index.manifest import Manifest
-from pipelines.index.plan import BlockTask, Plan
+from pipelines.index import manifest
+from pipelines.index.plan import BlockTask
+from pipelines.index.row import Row
+from pipelines.index.source import Source
 from pipelines.store import Store
 
 
-def mended(store: Store, found: Manifest) -> tuple[Manifest, corrections.Applied]:
-    """Merge a city's corrections over its manifest; the file itself stays as it is.
+@dataclass(frozen=True)
+class Corrected:
+    """The manifest's rows as corrected, and what is told that no row tells."""
 
-    The manifest's hash takes in theirs, so that another run is another run.
-    """
-    given = corrections.read(store)
-    made = corrections.applied(found.rows, given)
-    both = f"{found.sha256} {given.sha256}".encode()
-    sha256 = hashlib.sha256(both).hexdigest() if given.sha256 else found.sha256
-    rejections = (*found.rejections, *made.rejections)
-    return replace(found, rows=made.rows, rejections=rejections, sha256=sha256), made
+    rows: Iterable[Row | Rejection] | None = None  # None: nothing is corrected
+    sha256: str = ""  # of the corrections
+    heights_m: dict[str, float] = field(default_factory=dict)  # by building
+    targets_px: dict[str, float] = field(default_factory=dict)  # x, by photo
 
+    def directions(self) -> "Corrected":
+        """Leave out the rows, which workers read elsewhere."""
+        return replace(self, rows=None)
 
-def directed(todo: Plan, made: corrections.Applied) -> Plan:
-    """Tell blocks what no row tells: heights that are known, and facades meant."""
-
-    def told(task: BlockTask) -> BlockTask:
+    def directed(self, task: BlockTask) -> BlockTask:
+        """Tell a block what no row tells: heights that are known, and facades meant."""
+        if not self.heights_m and not self.targets_px:
+            return task
         lots = {f"{front.block}-{front.lot}" for front in task.fronts}
-        heights_m = {one: h for one, h in made.heights_m.items() if one in lots}
+        heights_m = {one: h for one, h in self.heights_m.items() if one in lots}
         names = dict.fromkeys(name for name, _ in task.photos)
         targets_px = {
-            name: made.targets_px[name[1]]
+            name: self.targets_px[name[1]]
             for name in names
-            if name[1] in made.targets_px
+            if name[1] in self.targets_px
         }
         return replace(
             task,
@@ -40,4 +43,26 @@ def directed(todo: Plan, made: corrections.Applied) -> Plan:
             targets_px=tuple(sorted(targets_px.items())),
         )
 
-    return replace(todo, blocks=tuple(map(told, todo.blocks)))
+
+def in_place(row: Row) -> tuple[object, ...]:
+    """Order rows as the manifest does, each block's together."""
+    cells = manifest.row_of(row.photo, row.front, root=row.root, credit=row.credit)
+    return (*manifest.place(cells), row.number)
+
+
+def corrected(store: Store, there: Source) -> Corrected:
+    """Merge a city's corrections over its manifest; the file itself stays as it is.
+
+    Where there are any, all rows are held at once.
+    """
+    given = corrections.read(store)
+    if not given.sha256:
+        return Corrected()
+    cells = (one for batch in there.batches() for one in batch)
+    results = list(manifest.checked(cells))
+    rows = [one for one in results if isinstance(one, Row)]
+    made = corrections.applied(rows, given)
+    refused = [one for one in results if isinstance(one, Rejection)]
+    ordered = sorted(made.rows, key=in_place)
+    every = (*refused, *made.rejections, *ordered)
+    return Corrected(every, given.sha256, dict(made.heights_m), dict(made.targets_px))

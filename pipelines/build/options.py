@@ -9,6 +9,7 @@ from typing import Any, Final
 from apache_beam.options.pipeline_options import (
     DirectOptions,
     PipelineOptions,
+    PrismRunnerOptions,
     StandardOptions,
 )
 from apache_beam.runners.runner import PipelineRunner, create_runner
@@ -16,7 +17,7 @@ from apache_beam.runners.runner import PipelineRunner, create_runner
 from pipelines.build import cluster
 from pipelines.build.embedded import EMBEDDED
 from pipelines.build.supervisor import Limits
-from pipelines.store import textual
+from pipelines.store import SECRETIVE, secretive, textual
 
 SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")  # RFC 3986, section 3.1
 OURS: Final = ("--city", "--models", "--shard", "--allow_schemes")
@@ -71,11 +72,13 @@ def options(
     """Gather options, with the embedded runner for `DirectRunner` and for none.
 
     Raises:
-        ValueError: if a word is no text, if the shard is not k/n with 1 <= k <= n, if a
-            scheme is none, if there is no such runner, if nobody knows one of Beam's
-            options, or for less than no workers.
+        ValueError: if a word is no text or tells credentials, if the shard is not k/n
+            with 1 <= k <= n, if a scheme is none, if there is no such runner, if nobody
+            knows one of Beam's options, or for less than no workers.
     """
     part(shard)
+    if secretive(city):
+        raise ValueError(SECRETIVE)
     odd = next((one for one in (models, *beam) if not textual(one)), None)
     if odd is not None:
         shown = os.fsencode(odd).decode(errors="backslashreplace")
@@ -89,7 +92,10 @@ def options(
     standard = found.view_as(StandardOptions)
     if standard.runner in ALIASES:
         standard.runner = EMBEDDED
-    known(standard.runner or EMBEDDED, beam)
+    prism = found.view_as(PrismRunnerOptions)
+    if "prism" in (standard.runner or "").casefold():
+        prism.prism_location = cluster.prism(prism.prism_location)
+    known(standard.runner or EMBEDDED, beam, prism.prism_location or "")
     workers = found.view_as(DirectOptions).direct_num_workers
     if workers < 0:
         raise ValueError(
@@ -98,7 +104,7 @@ def options(
     return found
 
 
-def known(runner: str, beam: Sequence[str]) -> None:
+def known(runner: str, beam: Sequence[str], prism: str) -> None:
     """Insist on a runner that is there, and on options that somebody knows.
 
     Beam drops what it does not know without a word. Runners of clusters may know more
@@ -113,7 +119,7 @@ def known(runner: str, beam: Sequence[str]) -> None:
         raise ValueError(f"--runner {runner}: {problem}") from problem
     if not isinstance(made, PipelineRunner):  # Beam takes the path of any function
         raise ValueError(f"--runner {runner}: it is no runner")  # noqa: TRY004
-    cluster.equipped(runner)
+    cluster.equipped(runner, prism)
     if runner != EMBEDDED:
         return
     parser: Any = argparse.ArgumentParser(

@@ -1,7 +1,7 @@
 """What a run has done becomes rows, and the rows of all workers become its tables."""
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -138,22 +138,33 @@ def rejection_rows(one: Rejection) -> Rows:
 
 @dataclass
 class WriteTable(beam.PTransform):
-    """Elements in, one sorted table out, whatever order the workers took."""
+    """Elements in, sorted tables out, whatever order the workers took."""
 
     store: Store
     run: str
     name: str
     rows: Callable[[Any], Rows]
+    parts: int = 1
 
     def expand(self, elements: pvalue.PCollection) -> Any:
-        """Wire rows to one file; it is written even if there are none."""
+        """Wire rows to files; each is written even if it has none."""
+        every = elements.pipeline | "Parts" >> beam.Create(
+            [(part, []) for part in range(self.parts)], reshuffle=False
+        )
+        told = elements | "Rows" >> beam.FlatMap(self._told)
         return (
-            elements
-            | "Rows" >> beam.FlatMap(self.rows)
-            | "Gather" >> beam.CombineGlobally(beam.combiners.ToListCombineFn())
-            | "Write" >> beam.Map(self._write)
+            (told, every)
+            | beam.Flatten()
+            | "Gather" >> beam.GroupByKey()
+            | "Write" >> beam.MapTuple(self._write)
         )
 
-    def _write(self, rows: list[dict[str, Any]]) -> str:
-        runs.write_table(self.store, self.run, self.name, rows)
+    def _told(self, element: Any) -> Iterator[tuple[int, Rows]]:
+        for row in self.rows(element):
+            yield runs.part_of(self.name, row, self.parts), [row]
+
+    def _write(self, part: int, told: Iterable[Rows]) -> str:
+        rows = [row for one in told for row in one]
+        which = (part, self.parts)
+        runs.write_table(self.store, self.run, self.name, rows, which)
         return self.name

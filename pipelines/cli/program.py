@@ -12,10 +12,12 @@ from pipelines.cli import (
     demo,
     explain,
     export,
+    gc,
     index,
     publish,
     report,
     view,
+    workers,
 )
 from pipelines.console import echo, opened_streams
 from pipelines.evaluate import commands
@@ -68,6 +70,8 @@ app.command("export", epilog=export.EXAMPLES)(export.export_command)
 app.command("demo", epilog=demo.EXAMPLES, context_settings=TO_BEAM)(demo.demo_command)
 app.command("report", epilog=report.EXAMPLES)(report.report_command)
 app.command("status", epilog=report.STATUS_EXAMPLES)(report.status_command)
+app.command("gc", epilog=gc.EXAMPLES)(gc.gc_command)
+app.command("workers", epilog=workers.EXAMPLES)(workers.workers_command)
 app.add_typer(commands.app, name="evaluate")
 
 

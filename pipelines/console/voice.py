@@ -2,7 +2,8 @@
 
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -48,22 +49,26 @@ class Voice:
                 fail(f"standard output: {why}; the work goes on, but untold")
 
 
-def told_rejections(rejections: Sequence[Mapping[str, Any]], voice: Voice) -> None:
+def told_rejections(rejections: Iterable[Mapping[str, Any]], voice: Voice) -> None:
     """Tell why things were rejected: people are told alike ones in one line."""
     if voice.machine:
         for one in rejections:
             voice.say("rejected", "", **one)
         return
     alike: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
+    count: Counter[tuple[str, ...]] = Counter()
     for one in rejections:  # what names itself in its detail is alike but for its name
         key = one["key"]
         detail = one["detail"].replace(key, "it") if key else one["detail"]
-        alike.setdefault((one.get("stage", ""), one["reason"], detail), []).append(one)
+        why = (one.get("stage", ""), one["reason"], detail)
+        count[why] += 1
+        if count[why] <= MOST_NAMES:
+            alike.setdefault(why, []).append(one)
     for (stage, reason, detail), some in list(alike.items())[:MOST_LINES]:
-        names = ", ".join(one["key"] for one in some[:MOST_NAMES])
-        if len(some) > MOST_NAMES:
-            names = f"{len(some)} ({names} ...)"
-        words = some[0]["detail"] if len(some) == 1 else detail
+        names, whole = ", ".join(x["key"] for x in some), count[stage, reason, detail]
+        if whole > MOST_NAMES:
+            names = f"{whole} ({names} ...)"
+        words = some[0]["detail"] if whole == 1 else detail
         why = ": ".join(filter(None, (stage, reason, words)))
         voice.say("rejected", f"rejected {names}: {why}")
     if len(alike) > MOST_LINES:

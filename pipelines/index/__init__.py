@@ -4,7 +4,7 @@ In: files and CSV. Out: `manifest.csv` and `.parquet`; then photos and blocks to
 Open `index` first, then `manifest`.
 """
 
-from pipelines.index.anchors import Anchors, Asked, load
+from pipelines.index.anchors import Anchors, Asked, load, told_of_places
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
 from pipelines.index.title import cleaned, of_folder
@@ -18,4 +18,5 @@ __all__ = [
     "index",
     "load",
     "of_folder",
+    "told_of_places",
 ]

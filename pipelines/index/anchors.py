@@ -91,6 +91,11 @@ def of_file(path: Path, read: Callable[[bytes], Read]) -> Read:
         raise Nothing(f"{path} {problem}") from problem
 
 
+def told_of_places(store: Store) -> bool:
+    """Tell whether the city folder knows where any block lies."""
+    return any(store.exists(name) for name in FILES)
+
+
 def load(store: Store, blocks: Collection[str]) -> Anchors:
     """Read what the city folder knows; a file that can't be used is told, and left out.
 

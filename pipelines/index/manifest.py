@@ -11,26 +11,29 @@ import hashlib
 import io
 import json
 import time
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
 from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from nostalgin_core.records import Front, Rejection
-from pipelines import bounded
-from pipelines.index import comma, told
-from pipelines.index.batches import decoded
+from pipelines.index import comma, source, told
 from pipelines.index.cells import text
 from pipelines.index.row import CSV, Row, contradictions, usable
+from pipelines.index.source import (
+    CSV_HASH,
+    KEPT,
+    PARQUET,
+    TITLE,
+    Source,
+    Unusable,
+    optional,
+)
 from pipelines.store import Store, parquet_bytes, tables
 
-PARQUET: Final = "manifest.parquet"
-CSV_HASH: Final = b"nostalgin.csv_sha256"
-TITLE: Final = b"nostalgin.title"
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
-KEPT: Final = b"nostalgin.kept"  # columns of a list that mean nothing here
 PHOTO: Final = pa.schema(
     [
         pa.field("root", pa.string()),  # folder that `photo` is relative to
@@ -46,10 +49,6 @@ REQUIRED: Final = ("photo", "front_id", "block", "lot")
 TOLD: Final = (*told.TOLD, told.AS_WRITTEN, "year")
 DIGITS: Final = 9
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
-
-
-class Unusable(ValueError):  # noqa: N818 - it reads as what it is about
-    """A manifest that can't be read at all, with what to do about it."""
 
 
 @dataclass(frozen=True)
@@ -173,110 +172,50 @@ def natural(text: str | None) -> tuple[int, str]:
 def read(store: Store) -> Manifest:
     """Read the manifest: the CSV if it was mended by hand, else the Parquet file.
 
+    It is held as a whole: a run reads it in parts (`asked`).
+
     Raises:
         Unusable: if there is none, or if what there is makes no sense.
     """
-    mended, parquet = optional(store, CSV), optional(store, PARQUET)
-    title, kept = "", tuple[str, ...]()
-    if parquet is not None:
-        table = parsed(parquet, store.root)
-        marks = table.schema.metadata or {}
-        title = marks.get(TITLE, b"").decode(errors="replace")
-        with contextlib.suppress(ValueError):  # what is kept is warned of, then
-            kept = tuple(map(str, json.loads(marks.get(KEPT, b"[]"))))
-        mark = marks.get(CSV_HASH, b"").decode(errors="replace")
-        if mended is None or hashlib.sha256(mended).hexdigest() == mark:
-            found = checked(
-                table.to_pylist(), table.column_names, parquet, PARQUET, kept=kept
-            )
-            return replace(found, title=title)
-    if mended is None:
-        raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
-    names, rows = parsed_csv(mended, f"{store.root}/{CSV}")
-    found = checked(rows, names, mended, CSV, kept=kept)
-    return replace(found, mended=parquet is not None, title=title)
+    there = source.found(store)
+    warnings = noticed(there)
+    cells = (one for batch in there.batches() for one in batch)
+    results = list(checked(cells))
+    rows = tuple(one for one in results if isinstance(one, Row))
+    return Manifest(
+        rows,
+        tuple(one for one in results if isinstance(one, Rejection)),
+        (*warnings, *contradictions(rows)),
+        there.sha256,
+        mended=there.mended,
+        title=there.title,
+        kept=there.kept,
+    )
 
 
-def optional(store: Store, name: str) -> bytes | None:
-    """Read a file if it is there.
+def noticed(there: Source) -> list[str]:
+    """Name columns that are not known; those that must be there are insisted on.
 
     Raises:
-        Unusable: if it can't be read.
+        Unusable: if one lacks.
     """
-    if not store.exists(name):
-        return None
-    try:
-        return store.read_bytes(name, bounded.TABLE_BYTES)
-    except OSError as problem:
-        why = problem.strerror or str(problem)
-        raise Unusable(
-            f"{store.root}/{name}: {why}; mend the file or move it away"
-        ) from problem
-
-
-def parsed(data: bytes, where: str) -> pa.Table:
-    """Parse the Parquet form."""
-    try:
-        file = pq.ParquetFile(io.BytesIO(data))
-        footer = file.metadata
-        groups = [footer.row_group(n) for n in range(footer.num_row_groups)]
-        bounded.fits(
-            sum(one.total_byte_size for one in groups), bounded.TABLE_BYTES, ""
-        )
-        names = file.schema_arrow.names
-        if len(set(names)) < len(names):
-            raise pa.ArrowInvalid("two columns have one name")
-        if footer.num_rows > comma.MOST_ROWS:  # a run of equal ones takes no bytes
-            raise pa.ArrowInvalid(f"more than {comma.MOST_ROWS:,} rows")
-        table = decoded(file)
-        table.validate(full=True)  # or else words may be no UTF-8
-    except (pa.ArrowException, OSError) as problem:
-        raise Unusable(
-            f"{where}/{PARQUET} is no Parquet file ({problem}): delete it, and "
-            f"{CSV} will be read, or run `nostalgin index --force`"
-        ) from problem
-    return table
-
-
-def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
-    """Parse the form that people mend."""
-    try:
-        return comma.parsed(data, ours=True)
-    except comma.NoTable as problem:
-        raise Unusable(f"{where} {problem}") from problem
-
-
-def checked(
-    cells: list[comma.Cells],
-    names: list[str],
-    data: bytes,
-    name: str,
-    *,
-    kept: tuple[str, ...] = (),
-) -> Manifest:
-    """Check every row by itself, so that one bad row spoils no other.
-
-    Rows in which nothing is written are counted, and else ignored. `kept` are columns
-    that `index` took from a list, of which it has warned.
-    """
+    name, names = there.name, there.names()
     missing = [one for one in REQUIRED if one not in names]
     if missing:
         raise Unusable(
             f"{name} lacks the columns {', '.join(missing)}: it has "
             f"{', '.join(map(str, names[:8]))}; docs/manifest.md describes them"
         )
-    unknown = [one for one in names if one not in (*SCHEMA.names, *TOLD, *kept)]
-    warnings = [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
-    results = [
-        usable(number, row)
-        for number, row in enumerate(cells, FIRST_ROW)
-        if not comma.blank(row)
-    ]
-    rows = tuple(one for one in results if isinstance(one, Row))
-    return Manifest(
-        rows,
-        tuple(one for one in results if isinstance(one, Rejection)),
-        (*warnings, *contradictions(rows)),
-        hashlib.sha256(data).hexdigest(),
-        kept=kept,
-    )
+    known = (*SCHEMA.names, *TOLD, *there.kept)
+    unknown = [one for one in names if one not in known]
+    return [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
+
+
+def checked(cells: Iterable[comma.Cells]) -> Iterator[Row | Rejection]:
+    """Check every row by itself, so that one bad row spoils no other.
+
+    Rows in which nothing is written are counted, and else ignored.
+    """
+    for number, row in enumerate(cells, FIRST_ROW):
+        if not comma.blank(row):
+            yield usable(number, row)

@@ -1,8 +1,11 @@
-"""What a manifest asks for: photos to work on, and blocks to build from them."""
+"""What a manifest asks for: photos to work on, and blocks to build from them.
+
+`plan` is the plain form of what the pipeline does with rows that no process holds.
+"""
 
 import hashlib
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from nostalgin_core.records import Front, Rejection
@@ -71,16 +74,18 @@ def plan(rows: Sequence[Row], *, city: str, shard: tuple[int, int] = (1, 1)) -> 
         if row.photo:
             photos[rooted(row.root, city), row.photo].append(row.front.block)
     return Plan(
-        tuple(
-            PhotoRef(root, name, tuple(sorted(set(theirs))))
-            for (root, name), theirs in sorted(photos.items())
-        ),
+        tuple(photo_ref(one, theirs) for one, theirs in sorted(photos.items())),
         tuple(
             block_task(block, theirs, city=city)
             for block, theirs in sorted(blocks.items())
         ),
         tuple(homeless(row) for row in rows if row.front is None),
     )
+
+
+def photo_ref(photo: Name, blocks: Iterable[str]) -> PhotoRef:
+    """Name a photo with the blocks that it may show."""
+    return PhotoRef(*photo, tuple(sorted(set(blocks))))
 
 
 def block_task(block: str, rows: Sequence[Row], *, city: str) -> BlockTask:

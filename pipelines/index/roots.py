@@ -14,7 +14,7 @@ from typing import Final
 from nostalgin_core.records import Rejection
 from pipelines.index.manifest import Manifest
 from pipelines.index.row import Row
-from pipelines.store import Store
+from pipelines.store import SECRETIVE, Store, secretive
 
 LOCAL: Final = "file"
 SHOWN: Final = 80  # letters of a root in a message
@@ -25,23 +25,31 @@ def located(found: Manifest, city: str, schemes: Sequence[str]) -> Manifest:
 
     The scheme of the city folder itself is allowed, for the user named it.
     """
-    allowed = {LOCAL, scheme_of(city) or LOCAL, *(one.casefold() for one in schemes)}
-    foreign = [row for row in found.rows if beyond(row, allowed)]
-    strange = {row.number for row in foreign}
-    rows = tuple(spelt(row, city) for row in found.rows if row.number not in strange)
-    rejections = (*found.rejections, *map(refused, foreign))
-    return replace(found, rows=rows, rejections=rejections)
+    results = [screened(row, city, schemes) for row in found.rows]
+    rows = tuple(one for one in results if isinstance(one, Row))
+    foreign = (one for one in results if isinstance(one, Rejection))
+    return replace(found, rows=rows, rejections=(*found.rejections, *foreign))
+
+
+def screened(
+    row: Row | Rejection, city: str, schemes: Sequence[str]
+) -> Row | Rejection:
+    """Find one row's photo; what is refused already stays so."""
+    if isinstance(row, Rejection):
+        return row
+    if secretive(row.root):
+        return Rejection(row.key, "manifest", "credentials in its root", SECRETIVE)
+    if "://" in row.root:
+        allowed = {LOCAL, scheme_of(city) or LOCAL, *(s.casefold() for s in schemes)}
+        if scheme_of(row.root) not in allowed:
+            return refused(row)
+    return spelt(row, city)
 
 
 def scheme_of(root: str) -> str:
     """Tell the scheme of a URI in small letters; a path has none."""
     scheme, mark, _ = root.strip().partition("://")
     return scheme.casefold() if mark else ""
-
-
-def beyond(row: Row, allowed: set[str]) -> bool:
-    """Tell whether a row names a scheme that is not allowed."""
-    return "://" in row.root and scheme_of(row.root) not in allowed
 
 
 def refused(row: Row) -> Rejection:
@@ -85,5 +93,6 @@ def rooted(root: str, city: str) -> str:
         return root
     if scheme_of(city):
         scheme, _, path = city.partition("://")
-        return f"{scheme}://{posixpath.normpath(f'{path}/{root}')}"
+        path, mark, asked = path.partition("?")
+        return f"{scheme}://{posixpath.normpath(f'{path}/{root}')}{mark}{asked}"
     return os.path.normpath(os.path.join(city, root))  # noqa: PTH118

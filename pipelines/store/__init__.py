@@ -7,10 +7,20 @@ code and parameters that made it, `runs` and `tables`.
 
 from pipelines.store.aside import Aside
 from pipelines.store.lock import Busy, busy, held
+from pipelines.store.packing import pack
 from pipelines.store.seal import Damaged
-from pipelines.store.store import Store, Unstored, durable, parquet_bytes, textual
+from pipelines.store.store import (
+    SECRETIVE,
+    Store,
+    Unstored,
+    durable,
+    parquet_bytes,
+    secretive,
+    textual,
+)
 
 __all__ = [
+    "SECRETIVE",
     "Aside",
     "Busy",
     "Damaged",
@@ -19,6 +29,8 @@ __all__ = [
     "busy",
     "durable",
     "held",
+    "pack",
     "parquet_bytes",
+    "secretive",
     "textual",
 ]

@@ -4,11 +4,15 @@
     CITY/runs/<run id>/run.json
 
 The run's id is a hash of what was asked for, so a run that is repeated writes the same
-tables to the same place. Clock times are in run.json alone.
+tables to the same place. Clock times are in run.json alone. The table of a large
+archive is written in parts, as `photos-03-of-37.parquet`, none of which is more than
+one process holds; what is told of one photo or block stands in one part.
 """
 
+import hashlib
 import json
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
 import pyarrow as pa
@@ -26,6 +30,8 @@ def columns(**kinds: pa.DataType) -> pa.Schema:
 
 TEXT, NUMBER, COUNT = pa.string(), pa.float64(), pa.int64()
 NUMBERS: Final = pa.list_(pa.float64())
+Part = tuple[int, int]  # which, from 0, of how many
+PART: Final = 20_000  # rows of a manifest for each part of a run's tables
 
 PHOTOS: Final = columns(
     name=TEXT, root=TEXT, key=TEXT, sha256=TEXT, blocks=pa.list_(TEXT)
@@ -102,26 +108,64 @@ def run_id(manifest_sha256: str, versions: Versions, shard: str) -> str:
     return key_of(manifest_sha256, json.dumps(vars(versions)), shard)[:12]
 
 
-def table_path(run: str, name: str) -> str:
-    """Name a run's table, relative to the city folder."""
-    return f"runs/{run}/{name}.parquet"
+def parts_of(rows: int) -> int:
+    """Tell in how many parts the tables of a run over so many rows are written."""
+    return 1 + rows // PART
+
+
+def table_path(run: str, name: str, which: Part = (0, 1)) -> str:
+    """Name a run's table, or one of its parts, relative to the city folder."""
+    part, parts = which
+    told = "" if parts == 1 else f"-{part + 1:02}-of-{parts:02}"
+    return f"runs/{run}/{name}{told}.parquet"
+
+
+def part_of(name: str, row: dict[str, Any], parts: int) -> int:
+    """Tell which part a row stands in: it follows from its first column."""
+    told = str(row[SCHEMAS[name].names[0]]).encode(errors="surrogateescape")
+    return int.from_bytes(hashlib.sha256(told).digest()[:8], "big") % parts
 
 
 def write_table(
-    store: Store, run: str, name: str, rows: Iterable[dict[str, Any]]
+    store: Store,
+    run: str,
+    name: str,
+    rows: Iterable[dict[str, Any]],
+    which: Part = (0, 1),
 ) -> None:
     """Write a run's table, sorted, so that no order of the workers shows."""
     ordered = sorted(rows, key=lambda row: json.dumps(row, sort_keys=True))
     table = pa.Table.from_pylist(ordered, SCHEMAS[name])
-    store.write_table(table_path(run, name), table)
+    store.write_table(table_path(run, name, which), table)
+
+
+def each_part(
+    store: Store, run: str, name: str, columns: Sequence[str] | None = None
+) -> Iterator[pa.Table]:
+    """Read a run's table part by part, or some of its columns.
+
+    Raises:
+        FileNotFoundError: if there is none.
+        Damaged: if a part is not what was written.
+    """
+    ours = re.compile(rf"{name}(-\d+-of-\d+)?\.parquet")
+    named = [one for one in store.names(f"runs/{run}") if ours.fullmatch(one)]
+    for one in named or [f"{name}.parquet"]:
+        yield store.read_table(f"runs/{run}/{one}", columns)
+
+
+def read_rows(store: Store, run: str, name: str) -> Iterator[dict[str, Any]]:
+    """Read a run's table row by row, holding one part."""
+    for table in each_part(store, run, name):
+        yield from table.to_pylist()
 
 
 def read_table(store: Store, run: str, name: str) -> list[dict[str, Any]]:
     """Read a run's table."""
-    return store.read_table(table_path(run, name)).to_pylist()
+    return list(read_rows(store, run, name))
 
 
 def read_column(store: Store, run: str, name: str, column: str) -> list[Any]:
     """Read one column of a run's table: of a large archive, all is too much."""
-    table = store.read_table(table_path(run, name), [column])
-    return table.column(column).to_pylist()
+    parts = each_part(store, run, name, [column])
+    return [cell for table in parts for cell in table.column(column).to_pylist()]

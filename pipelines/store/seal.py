@@ -8,7 +8,7 @@ the others, and no file passes for another.
 
 import hashlib
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 import pyarrow as pa
@@ -36,17 +36,28 @@ class Damaged(ValueError):  # noqa: N818 - it reads as what it is about
 
 def sealed(table: pa.Table, name: str = "") -> bytes:
     """Encode a table; the same rows and name give the same bytes."""
-    marked = {**(table.schema.metadata or {}), SEAL: ZEROS}
+    return sealed_groups(table.schema, [table], name)
+
+
+def sealed_groups(schema: pa.Schema, groups: Iterable[pa.Table], name: str) -> bytes:
+    """Encode tables as the row groups of one file, holding one at a time."""
+    marked = schema.with_metadata({**(schema.metadata or {}), SEAL: ZEROS})
     sink = io.BytesIO()
-    pq.write_table(
-        table.replace_schema_metadata(marked),
+    with pq.ParquetWriter(
         sink,
+        marked,
         compression="zstd",
         use_dictionary=False,
         write_statistics=False,
         write_page_checksum=True,
-    )
-    data = sink.getvalue()
+    ) as writer:
+        for table in groups:
+            writer.write_table(table.replace_schema_metadata(marked.metadata))
+    return signed(sink.getvalue(), name)
+
+
+def signed(data: bytes, name: str) -> bytes:
+    """Put its sum into the footer of a file that was written with zeros there."""
     footer = data[-TAIL - length(data[-TAIL:]) :]
     at = len(data) - len(footer) + place(footer)
     return data[:at] + digest(footer, len(data), name) + data[at + len(ZEROS) :]
@@ -74,15 +85,22 @@ def opened(file: pa.NativeFile, name: str = "") -> pq.ParquetFile:
     return pq.ParquetFile(file, page_checksum_verification=True)
 
 
-def read(artifact: pq.ParquetFile, columns: Sequence[str] | None = None) -> pa.Table:
-    """Read a table, or some of its columns.
+def read(
+    artifact: pq.ParquetFile,
+    columns: Sequence[str] | None = None,
+    groups: Iterable[int] | None = None,
+) -> pa.Table:
+    """Read a table, or some of its columns, or of its row groups.
 
     Raises:
         Damaged: if a page is not what was written.
         OSError: if it can't be read at all.
     """
+    wanted = None if columns is None else list(columns)
     try:
-        return artifact.read(None if columns is None else list(columns))
+        if groups is None:
+            return artifact.read(wanted)
+        return artifact.read_row_groups(list(groups), wanted)
     except (OSError, pa.ArrowException) as problem:
         if isinstance(problem, OSError) and problem.errno is not None:
             raise  # the disk's word, or the network's

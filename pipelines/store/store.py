@@ -11,12 +11,13 @@ damaged later is found out when it is read (`seal`). A rejection is an artifact 
 
 import contextlib
 import errno
+import functools
 import hashlib
 import io
 import os
 import uuid
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -27,7 +28,14 @@ import pyarrow.parquet as pq
 from nostalgin_core.records import Rejection
 from pipelines import bounded
 from pipelines.store import seal, tables
+from pipelines.store.disk import SECRETIVE, durable, reached, secretive, textual
 from pipelines.store.seal import Damaged
+from pipelines.store.shelf import (
+    ARTIFACT,
+    Place,
+    Shelf,
+    shelf,
+)
 
 ARTIFACTS: Final = "artifacts"
 VERDICT: Final = b"nostalgin.verdict"
@@ -57,28 +65,12 @@ def parquet_bytes(table: pa.Table) -> bytes:
     return sink.getvalue()
 
 
-def textual(name: str) -> bool:
-    """Tell whether a file's name is text; a file system takes any bytes."""
-    return not any("\ud800" <= letter <= "\udfff" for letter in name)
-
-
-def durable(path: Path, data: bytes) -> None:
-    """Write a new file that is on the disk when this returns.
-
-    Raises:
-        FileExistsError: if there is one, or a link.
-    """
-    with path.open("xb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-
-
 @dataclass(frozen=True)
 class Store:
     """A city folder, on this machine or wherever Arrow's file systems reach."""
 
     root: str  # a path, or a URI such as s3://bucket/city
+    era: str = field(default="", compare=False)  # within one, listings are kept
 
     def _open(self) -> tuple[pafs.FileSystem, str]:
         """Find the file system.
@@ -89,10 +81,13 @@ class Store:
         if not textual(self.root):
             shown = os.fsencode(self.root).decode(errors="backslashreplace")
             raise OSError(errno.EILSEQ, f"{shown} is not UTF-8", self.root)
+        if secretive(self.root):
+            scheme = self.root.partition("://")[0]
+            raise OSError(errno.EINVAL, SECRETIVE, f"{scheme}://")
         local = "://" not in self.root
         where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
         try:
-            return pafs.FileSystem.from_uri(where)
+            return reached(where, os.getpid())
         except pa.ArrowInvalid as problem:
             raise OSError(errno.EINVAL, str(problem), self.root) from problem
 
@@ -116,17 +111,21 @@ class Store:
             return file.read()
 
     def write_bytes(self, name: str, data: bytes) -> None:
-        """Write a file so that it is there wholly or not at all."""
+        """Write a file so that it is there wholly or not at all.
+
+        An object store shows nothing of an object before it is whole: there it is
+        written under its own name, by one request where it fits into one.
+        """
         system, root = self._open()
         target = f"{root}/{name}"
+        if not isinstance(system, pafs.LocalFileSystem):
+            with system.open_output_stream(target) as stream:
+                stream.write(data)
+            return
         system.create_dir(target.rpartition("/")[0], recursive=True)
         partial = f"{target}.{uuid.uuid4().hex[:8]}.partial"
         try:
-            if isinstance(system, pafs.LocalFileSystem):
-                durable(Path(partial), data)
-            else:
-                with system.open_output_stream(partial) as stream:
-                    stream.write(data)
+            durable(Path(partial), data)
             system.move(partial, target)
         except OSError:
             with contextlib.suppress(OSError):  # a full disk need not keep a torn file
@@ -140,10 +139,47 @@ class Store:
         return sorted(one.base_name for one in system.get_file_info(at))
 
     def drop(self, name: str) -> None:
+        """Remove a file if it is there; from a pack, by writing it without."""
+        self.remove(name)
+        known = ARTIFACT.fullmatch(name)
+        place = self.listed(known[1]).find(known[2]) if known else None
+        if known and place is not None:
+            from pipelines.store.packing import repack
+
+            repack(self, known[1], place.pack, without={known[2]})
+            remembered.cache_clear()
+
+    def remove(self, name: str) -> None:
         """Remove a file if it is there."""
         system, root = self._open()
         with contextlib.suppress(FileNotFoundError):
             system.delete_file(f"{root}/{name}")
+
+    def listed(self, folder: str) -> Shelf:
+        """List the artifacts of a stage's version."""
+        return shelf(*self._open(), folder)
+
+    def _placed(self, name: str, *, anew: bool) -> tuple[str, Place] | None:
+        known = ARTIFACT.fullmatch(name)
+        if known is None or not (anew or self.era):
+            return None
+        folder, key = known.groups()
+        if anew:
+            there = self.listed(folder)
+        else:
+            there = remembered(self.root, folder, self.era, os.getpid())
+        place = there.find(key)
+        return None if place is None else (folder, place)
+
+    def cut(self, folder: str, place: Place) -> bytes:
+        """Read an artifact's bytes out of a pack.
+
+        Raises:
+            FileNotFoundError: if the pack was written anew since.
+        """
+        system, root = self._open()
+        with system.open_input_file(f"{root}/{folder}/{place.pack}") as file:
+            return file.read_at(place.size, place.start)
 
     def write_table(self, name: str, table: pa.Table) -> None:
         """Write a table as sealed Parquet, wholly or not at all."""
@@ -157,6 +193,30 @@ class Store:
             Damaged: if it is not what was written.
         """
         return self._read(name, lambda artifact: seal.read(artifact, columns))
+
+    def write_groups(
+        self, name: str, schema: pa.Schema, groups: Iterable[pa.Table]
+    ) -> None:
+        """Write tables as the row groups of one file, holding one at a time."""
+        self.write_bytes(name, seal.sealed_groups(schema, groups, name))
+
+    def read_groups(
+        self, name: str, span: tuple[int, int] | None = None
+    ) -> Iterator[pa.Table]:
+        """Read row groups one by one: all, or from a first to before another.
+
+        Raises:
+            FileNotFoundError: if there is no such file.
+            Damaged: if it is not what was written.
+        """
+        system, root = self._open()
+        with system.open_input_file(f"{root}/{name}") as file:
+            try:
+                artifact = seal.opened(file, name)
+                for number in range(*(span or (0, artifact.num_row_groups))):
+                    yield seal.read(artifact, groups=[number])
+            except Damaged as problem:
+                raise Damaged(problem.why, name) from problem
 
     def verdict(self, name: str) -> Rejection | bool:
         """Tell what an artifact holds: True if made, its rejection, False if absent.
@@ -172,15 +232,36 @@ class Store:
                 return True
             return tables.records(Rejection, seal.read(artifact))[0]
 
-        return self._read(name, told) if self.exists(name) else False
+        found = self._placed(name, anew=False)
+        if found is not None and not found[1].rejected:
+            return True
+        try:
+            return self._read(name, told)
+        except FileNotFoundError:
+            return False
 
     def _read(self, name: str, told: Callable[[pq.ParquetFile], Any]) -> Any:
+        found = self._placed(name, anew=False)
+        if found is not None:
+            with contextlib.suppress(FileNotFoundError):
+                return self._told(pa.BufferReader(self.cut(*found)), name, told)
         system, root = self._open()
-        with system.open_input_file(f"{root}/{name}") as file:
-            try:
-                return told(seal.opened(file, name))
-            except Damaged as problem:
-                raise Damaged(problem.why, name) from problem
+        try:
+            with system.open_input_file(f"{root}/{name}") as file:
+                return self._told(file, name, told)
+        except FileNotFoundError:
+            found = self._placed(name, anew=True)
+            if found is None:
+                raise
+        return self._told(pa.BufferReader(self.cut(*found)), name, told)
+
+    def _told(
+        self, file: pa.NativeFile, name: str, told: Callable[[pq.ParquetFile], Any]
+    ) -> Any:
+        try:
+            return told(seal.opened(file, name))
+        except Damaged as problem:
+            raise Damaged(problem.why, name) from problem
 
     def keep(self, name: str, made: pa.Table | Rejection) -> None:
         """Write an artifact: rows that were made, or the rejection in their place.
@@ -198,3 +279,10 @@ class Store:
             self.write_table(name, marked)
         except OSError as problem:
             raise Unstored(f"{name}: {problem}") from problem
+
+
+@functools.lru_cache(maxsize=64)
+def remembered(root: str, folder: str, era: str, process: int) -> Shelf:
+    """List the artifacts of a stage's version once in an era, in each process."""
+    del era, process
+    return Store(root).listed(folder)

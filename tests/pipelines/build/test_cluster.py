@@ -75,3 +75,15 @@ def test_words_that_are_no_text_are_refused(odd: str) -> None:
         options("c", beam=[odd])
     with pytest.raises(ValueError, match="is not UTF-8"):
         options("c", models="\udcff")
+
+
+def test_prism_is_named_or_beside_and_never_fetched(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    given = ["--runner=PrismRunner", "--prism_location=/opt/prism"]
+    made = options("c", beam=given).get_all_options()
+    assert made["prism_location"] == "/opt/prism"
+    monkeypatch.setattr(cluster.sys, "executable", "/nowhere/python")
+    monkeypatch.setenv("PATH", "/nowhere")
+    with pytest.raises(ValueError, match="run `make prism`"):
+        options("c", beam=["--runner=PrismRunner"])

@@ -1,0 +1,95 @@
+"""What a run is asked for reaches the pipeline in pieces, and no row in its graph."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import apache_beam as beam
+import numpy as np
+import pytest
+from apache_beam.testing import test_pipeline
+from apache_beam.testing.util import assert_that, equal_to
+
+from nostalgin_core.records import Front, Rejection
+from pipelines.build.bench import Bench
+from pipelines.build.build import write
+from pipelines.build.city import city
+from pipelines.build.planned import Plan
+from pipelines.index import asked, manifest, source
+from pipelines.index.asked import Asked, ask
+from pipelines.index.plan import plan
+from pipelines.models import Models
+from pipelines.store import Store
+from pipelines.store.versions import Versions
+
+FRONT = Front("1-1-0", "1", "1", 0, 0, 0, "Elm Street", "1", 8.0, None, False)  # noqa: FBT003
+ROWS = 720_000
+MOST_BYTES = 1_000_000
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    return Store(str(tmp_path / "city"))
+
+
+def listed(store: Store, blocks: int) -> None:
+    """Write a manifest of blocks of three fronts, some shown twice, one homeless."""
+    rows = []
+    for number in range(3 * blocks):
+        block, rank = divmod(number, 3)
+        front = replace(FRONT, front_id=f"{block}-{rank}", block=str(block), rank=rank)
+        names = [f"{number}.jpg", f"{max(0, number - 3)}.jpg"] if rank else [""]
+        rows += [manifest.row_of(n, front, root="photos", credit="") for n in names]
+    rows.append(manifest.row_of("stray.jpg", None, root="photos", credit=""))
+    manifest.write(
+        store, [rows[n] for n in np.random.default_rng(7).permutation(len(rows))]
+    )
+
+
+@pytest.mark.parametrize("shard", [(1, 1), (2, 3)])
+def test_the_pipeline_plans_what_the_plain_loop_plans(
+    store: Store, shard: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(asked, "GROUP", 16)
+    listed(store, 40)
+    todo = ask(store, source.found(store), "run", shard=shard)
+    oracle = plan(manifest.read(store).rows, city=store.root, shard=shard)
+    assert len(todo.pieces()) > 3
+    assert (todo.photos, todo.blocks) == (len(oracle.photos), len(oracle.blocks))
+    with test_pipeline.TestPipeline(runner="FnApiRunner") as pipeline:
+        made = pipeline | Plan(store, todo)
+        blocks = made.blocks | beam.Values()
+        assert_that(made.photos, equal_to(oracle.photos), "photos")
+        assert_that(blocks, equal_to(oracle.blocks), "blocks")
+        assert_that(made.rejections, equal_to(oracle.rejections), "rejections")
+
+
+def test_what_is_asked_is_read_back_in_pieces(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(asked, "GROUP", 10)
+    monkeypatch.setattr(asked, "PIECES", 4)
+    listed(store, 20)
+    todo = ask(store, source.found(store), "run")
+    whole = list(asked.rows(store, "run"))
+    parts = [list(asked.rows(store, "run", piece)) for piece in todo.pieces()]
+    assert len(parts) == 4
+    assert [one for part in parts for one in part] == whole
+    usable = [one for one in whole if not isinstance(one, Rejection)]
+    assert usable == list(manifest.read(store).rows[:-1])
+
+
+def graph(store: Store, rows: int) -> int:
+    """Tell how many bytes the pipeline over so many rows has, as runners get it."""
+    groups = -(-rows // asked.GROUP)
+    todo = Asked("run", rows, rows // 50, groups, rows)
+    bench = Bench(store, Versions.present(Models()), Models())
+    pipeline = beam.Pipeline(runner="FnApiRunner")
+    write(city(pipeline, todo, bench), bench, todo)
+    return pipeline.to_runner_api().ByteSize()
+
+
+def test_the_graph_does_not_grow_with_the_collection(store: Store) -> None:
+    small, large = graph(store, 100), graph(store, ROWS)
+    assert large < MOST_BYTES
+    assert graph(store, 10 * ROWS) < 1.2 * large
+    assert large < 1.2 * small
