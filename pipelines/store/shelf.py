@@ -120,7 +120,10 @@ def shelf(system: pafs.FileSystem, root: str, folder: str) -> Shelf:
     """List a stage's artifacts, and read the indexes of its packs."""
     top = f"{root}/{folder}"
     at = pafs.FileSelector(top, allow_not_found=True, recursive=True)
-    found = (one.path for one in system.get_file_info(at) if one.is_file)
+    try:
+        found = [one.path for one in system.get_file_info(at) if one.is_file]
+    except NotADirectoryError:  # who keeps something there will tell
+        found = []
     names = sorted(path[len(top) + 1 :] for path in found)
     loose = (LOOSE.fullmatch(name) for name in names)
     packs = [name for name in names if PACKED.fullmatch(name)]

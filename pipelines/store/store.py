@@ -237,7 +237,7 @@ class Store:
             return True
         try:
             return self._read(name, told)
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
             return False
 
     def _read(self, name: str, told: Callable[[pq.ParquetFile], Any]) -> Any:
