@@ -4,7 +4,7 @@ import pytest
 import shapely
 
 from nostalgin_core import address
-from nostalgin_core.block import block
+from nostalgin_core.block import block, widths
 from nostalgin_core.block.cuboid import Shown
 from nostalgin_core.records import Front
 from tests.core import sample_block as sample
@@ -103,7 +103,7 @@ def test_two_facades_give_an_assumed_second_width_its_proportion() -> None:
         fronts[0].front_id: [Shown(("p", 0), 0.6, 0.01, 0.9)],
         fronts[1].front_id: [Shown(("p", 1), 0.9, 0.01, 0.9)],
     }
-    _, second = block.with_seen_widths(fronts, shown)
+    _, second = widths.with_seen_widths(fronts, shown)
     assert second.width_m == pytest.approx(12.0 * 0.9 / 0.6)
 
 
@@ -111,9 +111,9 @@ def test_a_guessed_width_moves_towards_what_its_photo_makes_likely() -> None:
     guess = replace(WEST[0], width_m=7.6, width_assumed=True)
     wide = {guess.front_id: [Shown(("p", 0), 2.0, 0.02, 0.9)]}
     narrow = {guess.front_id: [Shown(("p", 0), 0.2, 0.02, 0.9)]}
-    assert 7.6 < block.with_seen_widths([guess], wide)[0].width_m < 28.0
-    assert 2.8 < block.with_seen_widths([guess], narrow)[0].width_m < 7.6
-    assert block.with_seen_widths([guess], {})[0].width_m == 7.6
+    assert 7.6 < widths.with_seen_widths([guess], wide)[0].width_m < 28.0
+    assert 2.8 < widths.with_seen_widths([guess], narrow)[0].width_m < 7.6
+    assert widths.with_seen_widths([guess], {})[0].width_m == 7.6
 
 
 def test_a_block_without_fronts_is_a_mistake() -> None:
