@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.index import Indexed
 
 MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
-MOST_NAMES: Final = 3  # of those that were rejected alike
+MOST_NAMES: Final = 8  # of those that were rejected alike
 GRAVE: Final = frozenset(("homeless", "held"))  # which the exit code tells, too
 
 

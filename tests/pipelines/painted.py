@@ -12,8 +12,9 @@ from onnx import TensorProto, helper, numpy_helper
 from pipelines.index.index import index
 
 SIZE = (640, 480)  # h, w
-LEFT = np.array([[40, 80], [230, 140], [230, 560], [40, 600]], np.float32)
-RIGHT = np.array([[250, 140], [440, 100], [440, 590], [250, 560]], np.float32)
+# The left one fills the middle of the picture: it is the one that is meant.
+LEFT = np.array([[40, 80], [270, 140], [270, 560], [40, 600]], np.float32)
+RIGHT = np.array([[290, 140], [450, 100], [450, 590], [290, 560]], np.float32)
 CAR = (80, 524, 200, 600)  # x0, y0, x1, y1
 
 
