@@ -9,7 +9,7 @@ for a million photos as for ten.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import apache_beam as beam
@@ -39,7 +39,7 @@ class Plan(beam.PTransform):
 
     store: Store
     asked: Asked
-    mended: Corrected
+    mended: Corrected = field(default_factory=Corrected)
 
     def expand(self, pipeline: Any) -> Any:
         """Wire the stage."""

@@ -4,11 +4,7 @@ In: `corrections.csv` or `.jsonl` of a city folder, and the manifest's rows. Out
 and blocks as corrected, and what each correction changed. Open `corrections` first.
 """
 
-from pipelines.corrections.applied import Applied, applied
+from pipelines.corrections.applied import applied
 from pipelines.corrections.corrections import read
 
-__all__ = [
-    "Applied",
-    "applied",
-    "read",
-]
+__all__ = ["applied", "read"]

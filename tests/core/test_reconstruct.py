@@ -52,7 +52,7 @@ def test_a_wall_has_the_proportions_of_the_facade_it_wears(
     building = rebuilt.settled.block.buildings[0]
     assert building.height is not None
     assert building.height.by_width_m == pytest.approx(10.0 / aspect)
-    assert building.height_m == pytest.approx(10.0 / aspect, rel=0.15)
+    assert building.height.low_m < 10.0 / aspect < building.height.high_m
 
 
 def test_the_model_is_a_glb_that_names_its_buildings(
@@ -99,8 +99,10 @@ def test_what_the_camera_saw_reaches_the_end_untouched(networks: Networks) -> No
         assert seen.any()
         assert np.array_equal(before.image[seen], after.image[seen])
         changed = before.evidence != after.evidence
-        assert (before.evidence[changed] == evidence.SOFT_EDGE).all()
-        assert (after.evidence[changed] == evidence.INPAINTED).all()
+        unsure = (evidence.SOFT_EDGE, evidence.INPAINTED, evidence.BEYOND_FRAME)
+        assert set(np.unique(before.evidence[changed])) <= set(unsure)
+        filled = (evidence.INPAINTED, evidence.COPIED)
+        assert set(np.unique(after.evidence[changed])) <= set(filled)
 
 
 def test_the_painted_networks_are_locked(tmp_path: Path) -> None:
