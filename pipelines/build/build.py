@@ -2,7 +2,6 @@
 
 import contextlib
 import copy
-import os
 import re
 import time
 from collections.abc import Callable
@@ -15,15 +14,16 @@ import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
 from apache_beam.runners.runner import PipelineResult
 
-from pipelines import index, site
+from pipelines import site
 from pipelines.build import cluster, embedded, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
-from pipelines.build.corrected import Corrected, corrected
+from pipelines.build.corrected import Corrected
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
 from pipelines.build.noted import note, stages
 from pipelines.build.options import CityOptions, part
+from pipelines.build.prepared import Prepared, prepared
 from pipelines.build.report import (
     Lost,
     Report,
@@ -33,12 +33,10 @@ from pipelines.build.report import (
     shown_before,
 )
 from pipelines.build.rows import WriteTable
-from pipelines.build.supervisor import Limits
-from pipelines.index import asked, manifest
-from pipelines.index.asked import ASKED, Asked, ask
+from pipelines.index import asked
+from pipelines.index.asked import Asked
 from pipelines.index.row import Row
-from pipelines.index.source import Source, Unusable, found
-from pipelines.models import NETWORKS, Models, one_thread
+from pipelines.models import one_thread
 from pipelines.store import Damaged, Store, Unstored, held, pack, runs
 from pipelines.store.versions import Versions
 
@@ -101,30 +99,8 @@ def made(
 ) -> Report:
     """Build in a city folder that is ours for the time."""
     ours = options.view_as(CityOptions)
-    schemes = [one for one in ours.allow_schemes.split(",") if one]
-    there = written_anew(store)
-    mended = corrected(store, there)
-    anchors = anchored(store, there)
-    warn = partial(warned, tell)
-    for line in anchors.warnings:
-        warn(line)
-    models = Models(ours.models) if ours.models else Models()
-    for network in NETWORKS:
-        models.load(network)  # a spoiled file is told here, not by every photo
-    limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
-    near = replace(store, era=f"{os.getpid()}.{time.time_ns()}")
-    form = "png" if ours.no_webp else "webp"
-    bench = Bench(near, Versions.present(models), models, limits, ours.retry, form)
-    if shard == (1, 1):
-        site.claim(store)  # whose folder it is, too, is told now
-    sources = there.sha256 + mended.sha256 + anchors.sha256
-    words = " ".join([ours.shard, *schemes, *(["png"] if ours.no_webp else [])])
-    run = runs.run_id(sources, bench.versions, words)
-    own = {"schemes": schemes, "shard": shard, "warn": warn}
-    todo = ask(store, there, run, results=mended.rows, **own)
-    if shard == (1, 1) and not todo.blocks:
-        store.drop(runs.table_path(run, ASKED))
-        raise Unusable(nothing(store, todo))
+    asked_for = prepared(ours, store, shard, partial(warned, tell))
+    bench, todo, run = asked_for.bench, asked_for.todo, asked_for.todo.run
     counts = {"photos": todo.photos, "blocks": todo.blocks}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
@@ -135,7 +111,7 @@ def made(
     again = 0
     for _ in range(HEALINGS):
         with watched(partial(bench.versions.counts, store.root), todo.photos):
-            result = launched(options, todo, bench, mended)
+            result = launched(options, todo, bench, asked_for.mended)
         check(store, run, bench.versions)
         done = stages(result)
         noted(done=done)
@@ -145,7 +121,7 @@ def made(
             return report
         try:
             anyway = ours.publish_anyway
-            shown = published(bench, todo, anchors, report, tell, anyway=anyway)
+            shown = published(asked_for, report, tell, anyway=anyway)
         except Damaged:
             spoiled = site.damaged(store, run, bench.versions)
             for path in spoiled:
@@ -155,28 +131,6 @@ def made(
             tidied(store, bench.versions)
             return shown
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
-
-
-def written_anew(store: Store) -> Source:
-    """Find the manifest; one that was mended by hand is written anew before.
-
-    Raises:
-        Unusable: if it can't be read.
-    """
-    there = found(store)
-    if not there.mended:
-        return there
-    manifest.rewrite(store, manifest.read(store))  # which holds all rows
-    return found(store)
-
-
-def anchored(store: Store, there: Source) -> index.Anchors:
-    """Read where blocks lie, if the city folder tells it of any."""
-    blocks: set[str] = set()
-    if index.told_of_places(store):
-        cells = (one for batch in there.batches() for one in batch)
-        blocks = {str(one.get("block") or "").strip() for one in cells} - {""}
-    return index.load(store, sorted(blocks, key=manifest.natural))
 
 
 def warned(tell: Tell, warning: str) -> None:
@@ -195,19 +149,14 @@ def tidied(store: Store, versions: Versions) -> None:
 
 
 def published(
-    bench: Bench,
-    todo: Asked,
-    anchors: index.Anchors,
-    report: Report,
-    tell: Tell,
-    *,
-    anyway: bool,
+    asked_for: Prepared, report: Report, tell: Tell, *, anyway: bool
 ) -> Report:
     """Publish a run, unless it shows less than what is published already.
 
     Raises:
         Damaged: if an artifact is.
     """
+    bench, todo = asked_for.bench, asked_for.todo
     store = bench.store
     better = shown_before(store)
     if report.shown_share < min(LEAST_SHOWN, better) and not anyway:
@@ -219,7 +168,7 @@ def published(
         tell("held", words, shown=report.shown_share, before=better)
         return replace(report, held=True)
     rows = [one for one in asked.rows(store, report.run) if isinstance(one, Row)]
-    told = {"title": todo.title, "anchors": anchors}
+    told = {"title": todo.title, "anchors": asked_for.anchors}
     for doubt in site.publish(store, report.run, bench.versions, rows, **told):
         warned(tell, doubt)
     remember(store, report)
@@ -227,13 +176,6 @@ def published(
         words = f"no site was written: build {store.root} where it is mounted"
         tell("warning", f"warning: {words}", warning=words)
     return report
-
-
-def nothing(store: Store, todo: Asked) -> str:
-    """Say that there is nothing to build, and what is wrong with the first row."""
-    one = todo.first
-    why = "it has no rows" if one is None else f"{one.key}: {one.reason}: {one.detail}"
-    return f"{store.root}/{manifest.CSV} names no front to build: {why}"
 
 
 def launched(

@@ -95,6 +95,8 @@ def index(
     manifest.write(store, cells, title=cleaned(title), kept=columns)
     for name, data in files.items():
         store.write_bytes(name, data)
+    said = about(read.warnings, {entry.row for entry in wanted})
+    unlisted = strangers if not blocks else ()
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
         fronts=len(fronts),
@@ -102,19 +104,8 @@ def index(
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
         widths_assumed=sum(front.width_assumed for front in fronts),
-        rejections=(
-            *unnamed,
-            *read.rejections,
-            *crowded,
-            *(strangers if not blocks else ()),
-        ),
-        warnings=(
-            *about(read.warnings, {e.row for e in wanted}),
-            *beside.warnings,
-            *doubts,
-            *placeless,
-            *kept,
-        ),
+        rejections=(*unnamed, *read.rejections, *crowded, *unlisted),
+        warnings=(*said, *beside.warnings, *doubts, *placeless, *kept),
     )
 
 

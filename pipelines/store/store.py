@@ -18,7 +18,7 @@ import os
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 import pyarrow as pa
@@ -137,6 +137,12 @@ class Store:
         system, root = self._open()
         at = pafs.FileSelector(f"{root}/{folder}", allow_not_found=True)
         return sorted(one.base_name for one in system.get_file_info(at))
+
+    def drop_folder(self, name: str) -> None:
+        """Remove a folder, and those it lies in, as far as they are empty."""
+        with contextlib.suppress(OSError):
+            for one in (name, *map(str, PurePosixPath(name).parents[:-1])):
+                Path(self.root, one).rmdir()  # an object store has none
 
     def drop(self, name: str) -> None:
         """Remove a file if it is there; from a pack, by writing it without."""
