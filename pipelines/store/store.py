@@ -245,6 +245,10 @@ class Store:
             return self._read(name, told)
         except (FileNotFoundError, NotADirectoryError):
             return False
+        except OSError:
+            if self.exists(name):
+                raise
+            return False  # what lies there is no file
 
     def _read(self, name: str, told: Callable[[pq.ParquetFile], Any]) -> Any:
         found = self._placed(name, anew=False)
