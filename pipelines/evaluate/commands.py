@@ -213,3 +213,18 @@ def heights_command(
 
         report = heights.evaluate(data, city)
     tell(report, heights.text(report), as_json=as_json)
+
+
+@app.command("views")
+def views_command(
+    folder: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],
+    *,
+    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Measure whether two photographs' views of one front are told to be one."""
+    with measuring():
+        from pipelines.evaluate import views
+
+        report = views.evaluate(folder, block=block)
+    tell(report, views.text(report), as_json=as_json)
