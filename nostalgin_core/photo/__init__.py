@@ -5,6 +5,6 @@ Paper: section 3.1, one gray photo, nothing known of the camera. Open `photo` fi
 """
 
 from nostalgin_core.photo.frame import exposed
-from nostalgin_core.photo.photo import decode, key
+from nostalgin_core.photo.photo import decode, key, size_px
 
-__all__ = ["decode", "exposed", "key"]
+__all__ = ["decode", "exposed", "key", "size_px"]

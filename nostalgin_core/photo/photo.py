@@ -29,7 +29,7 @@ from PIL import (
 )
 
 from nostalgin_core.arrays import Gray
-from nostalgin_core.photo import frame
+from nostalgin_core.photo import frame, page
 from nostalgin_core.records import Photo, Rejection
 
 MAX_MEGAPIXELS: Final = 150.0  # a 4x5 inch negative at 2,400 dpi has 115
@@ -83,7 +83,8 @@ def decode(
 ) -> Photo | Rejection:
     """Read a photo as gray, upright, with its film border found.
 
-    The first page of a file with several is read. `name` is the file's name as its
+    The first page of a file with several is read. A page with several prints on it is
+    refused. `name` is the file's name as its
     owner knows it; it appears in rejections and nowhere else.
     """
     try:
@@ -95,7 +96,23 @@ def decode(
     except _RefusedError as refused:
         reason, detail = refused.args
         return Rejection(key(data), "photo", reason, f"{name}: {detail}")
+    if page.gutters(image):
+        detail = "a stripe of page parts them; cut each out, and index them one by one"
+        return Rejection(key(data), "photo", "several prints", f"{name}: {detail}")
     return Photo(key(data), image, frame.exposed(image))
+
+
+def size_px(data: bytes) -> tuple[int, int] | None:
+    """Read an upright photo's width and height from its header; None if it has none."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            opened = _open(data)
+            turned = _orientation(opened) > 4  # as `_upright` undoes them
+    except _RefusedError:
+        return None
+    width, height = opened.size
+    return (height, width) if turned else (width, height)
 
 
 def _open(data: bytes) -> ImageFile.ImageFile:

@@ -15,10 +15,17 @@ from jaxtyping import Float, Float32, Int
 
 from nostalgin_core.arrays import Gray, Probability
 from nostalgin_core.records import Box, Instance, Photo, Rejection
-from nostalgin_core.segment.answer import CATEGORIES, Network, Pixels, checked
+from nostalgin_core.segment.answer import (
+    CATEGORIES,
+    Answer,
+    Network,
+    Pixels,
+    checked,
+)
 from nostalgin_core.segment.flare import flares
 from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
+from nostalgin_core.segment.posture import doubted, excess, sure, undone
 from nostalgin_core.segment.punch import healed, punches
 from nostalgin_core.segment.walls import without_walls
 
@@ -53,6 +60,9 @@ def segment(
     """
     least = min(facade_score, occluder_score)
     found = everything(photo, network, least=least, short_px=short_px, long_px=long_px)
+    other = fallen(photo, found, network, short_px=short_px, long_px=long_px)
+    if other is not None:
+        return other
     return trusted(
         photo, found, facade_score=facade_score, occluder_score=occluder_score
     )
@@ -76,8 +86,7 @@ def everything(
     x0, y0, x1, y1 = photo.frame
     frame = healed(photo, punches(photo))[y0:y1, x0:x1]
     gray = prepared(frame, short_px=short_px, long_px=long_px)
-    answer = checked(network(gray[None, None]), gray.shape)
-    boxes, labels, scores, masks, pixels = answer
+    boxes, labels, scores, masks, pixels = asked(gray, network)
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
     found = []
     for i in np.argsort(-scores, kind="stable"):
@@ -90,6 +99,50 @@ def everything(
             category = CATEGORIES[int(labels[i]) - 1]
             found.append(Instance(category, float(scores[i]), here, probability))
     return Found(tuple(found), pixels)
+
+
+def asked(gray: Float32[np.ndarray, "rows columns"], network: Network) -> Answer:
+    """Ask about a picture at the network's scale.
+
+    Raises:
+        Nonsense: if the network doesn't answer what `Network` says.
+    """
+    return checked(network(gray[None, None]), gray.shape)
+
+
+def fallen(
+    photo: Photo,
+    found: Found,
+    network: Network,
+    *,
+    short_px: int = 416,
+    long_px: int = 1344,
+) -> Rejection | None:
+    """Refuse a photo that is turned or a negative; None where it stands upright.
+
+    Of two postures that are believed, the network is surer of the right one.
+
+    Raises:
+        Nonsense: if the network doesn't answer what `Network` says.
+    """
+    x0, y0, x1, y1 = photo.frame
+    frame = photo.image[y0:y1, x0:x1]
+    here, most, lying = sure(found.pixels), 0.0, None
+    for doubt in doubted(frame):
+        undoing = undone(frame, doubt.posture)
+        gray = prepared(undoing, short_px=short_px, long_px=long_px)
+        there = sure(asked(gray, network).pixels)
+        if excess(doubt, there, here) > 0 and there > most:
+            most, lying = there, doubt.posture
+    if lying is None:
+        return None
+    return Rejection(
+        photo.key,
+        "segment",
+        lying.reason,
+        "the network is surer of the street that it sees otherwise: "
+        f"{lying.remedy}, and index the folder again",
+    )
 
 
 def trusted(
