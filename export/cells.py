@@ -40,10 +40,7 @@ def cells(sample: Sample) -> Cells:
     ends = np.zeros(shape, np.uint8)
     for thing in fronts:
         if thing.scored:
-            fixed = [np.round(r * 2**SHIFT_BITS).astype(np.int32) for r in thing.rings]
-            cv2.polylines(
-                ends, fixed, isClosed=True, color=1, thickness=END_PX, shift=SHIFT_BITS
-            )
+            _draw(thing.rings, ends)
     kernel = np.ones((2 * NEAR_PX + 1,) * 2, np.uint8)
     unseen = far | (cv2.dilate(hiding.astype(np.uint8), kernel) > 0)
     planes = [_share(m) for m in (ground, front, hiding)]

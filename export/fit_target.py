@@ -1,13 +1,14 @@
 """The seven weights of `nostalgin_core/matte/target.py` are fitted to hand labels.
 
-Each labelled tax photo gives its fronts as the network finds them, their sides made
-straight as in a build, since what is stated of them is to come true of them. A front
+Each labelled tax photo gives its fronts as the network finds them inside the film's
+border, their sides made straight: as in a build, since what is stated of them is to
+come true of them. A front
 counts as recorded where what is visible of it overlaps a labelled target by a half or
 more. The weights minimise the logistic loss, summed over fronts, plus a tenth of their
 squares. What is stated of each photo by weights fitted to the others, in eight parts,
 is held against the labels.
 
-    python -m export.fit_target --data DATA
+    python -m export.fit_target --data DATA --answers .train/answers
 """
 
 import argparse
@@ -18,13 +19,14 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.optimize import minimize
 
-from export.mask_rcnn_onnx import open_shipped
+from export.remembered import shipped
 from export.segmentation_data import Sample, fill, read_folder
 from nostalgin_core import matte, placard, segment
 from nostalgin_core.matte.target import WEIGHTS, Shown, features
 from nostalgin_core.measure.calibration import Reliability, reliability
 from nostalgin_core.measure.segmentation import overlap
-from nostalgin_core.records import Box, Facade, Instance, Photo, Rejection
+from nostalgin_core.photo import exposed
+from nostalgin_core.records import Facade, Instance, Photo, Rejection
 from nostalgin_core.segment import Network
 
 Fronts = tuple[Float[np.ndarray, "n 7"], Bool[np.ndarray, " n"]]
@@ -69,8 +71,7 @@ def fronts(samples: Iterable[Sample], network: Network) -> list[Fronts]:
     made = []
     for sample in samples:
         targets = [t for t in sample.things if t.target]
-        height, width = sample.image.shape
-        photo = Photo(sample.name, sample.image, Box(0, 0, width, height))
+        photo = Photo(sample.name, sample.image, exposed(sample.image))
         instances = segment.segment(photo, network)
         if not targets or isinstance(instances, Rejection):
             continue
@@ -103,8 +104,9 @@ def main() -> None:
     """Fit on the blocks trained on, and check on the one held out."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
-    folder = parser.parse_args().data / "taxphotos"
-    network = open_shipped()
+    parser.add_argument("--answers", type=Path, help="folder of what is remembered")
+    args = parser.parse_args()
+    folder, network = args.data / "taxphotos", shipped(args.answers)
     learnt = fronts(read_folder(folder), network)
     held = fronts(read_folder(folder, held_out=True), network)
     weights = fit(learnt)

@@ -7,7 +7,7 @@ not.
 The weights minimise the logistic loss, summed over fronts, plus their squares, each as
 the spread of its feature has it.
 
-    python -m export.fit_walls --data DATA
+    python -m export.fit_walls --data DATA --answers .train/answers
 """
 
 import argparse
@@ -18,7 +18,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.optimize import minimize
 
-from export.mask_rcnn_onnx import open_shipped
+from export.remembered import shipped
 from export.segmentation_data import Sample, fill, read_folder
 from nostalgin_core.photo import exposed
 from nostalgin_core.records import Instance, Photo
@@ -90,8 +90,9 @@ def main() -> None:
     """Fit, and print the weights and how many walls are told apart where none was."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
-    data = parser.parse_args().data
-    network = open_shipped()
+    parser.add_argument("--answers", type=Path, help="folder of what is remembered")
+    args = parser.parse_args()
+    data, network = args.data, shipped(args.answers)
     for kept in (False, True):
         samples = [
             one for name in FOLDERS for one in read_folder(data / name, held_out=kept)

@@ -148,12 +148,16 @@ class MaskRCNN(nn.Module):
         taps, features = self.backbone.both(gray / 127.5 - 1)
         if self.training:  # the finest level costs a third of the backward pass
             features["0"] = features["0"].detach()
-        logits = self.branch(taps, list(features.values()))
         coarse = {level: features[level] for level in PROPOSING}
         proposals, rpn_losses = self.rpn(images, coarse, targets)
         found, lost = self.roi_heads(features, proposals, images.image_sizes, targets)
+        levels = list(features.values())
         if targets is not None and self.training:
+            if not self.branch.learning:
+                return rpn_losses | lost
+            logits = self.branch(taps, levels)
             return rpn_losses | lost | losses(logits, targets[0]["cells"])
+        logits = self.branch(taps, levels)
         first, pixels = found[0], probabilities(logits)[0]
         masks = first["masks"][:, 0]
         return first["boxes"], first["labels"], first["scores"], masks, pixels
@@ -223,10 +227,23 @@ def load_weights(network: MaskRCNN, weights: Mapping[str, np.ndarray]) -> MaskRC
     return network.to(memory_format=torch.channels_last)  # halves the time on a CPU
 
 
-def freeze(network: MaskRCNN, *, but_branch: bool = False) -> None:
-    """Leave the first, widest stages as they are, or all but the branch."""
-    body = network.backbone.body
-    firsts = (body.stem, *body.blocks[:FROZEN_BLOCKS])
-    rest = (network.backbone, network.rpn, network.roi_heads)
-    for part in rest if but_branch else firsts:
+def freeze(
+    network: MaskRCNN, *, but_branch: bool = False, but_boxes: bool = False
+) -> None:
+    """Leave the first, widest stages as they are, or all but the branch or boxes.
+
+    Where proposals and boxes alone learn, masks and pixels are not asked for in
+    training: they are most of its work. Raises ValueError where both learn alone.
+    """
+    if but_branch and but_boxes:
+        raise ValueError("but_branch and but_boxes leave nothing to learn together")
+    body, heads = network.backbone.body, network.roi_heads
+    parts: tuple[nn.Module, ...] = (body.stem, *body.blocks[:FROZEN_BLOCKS])
+    if but_branch:
+        parts = (network.backbone, network.rpn, heads)
+    if but_boxes:
+        masks = (heads.get_submodule(f"mask_{part}") for part in ("head", "predictor"))
+        parts = (network.backbone, network.branch, *masks)
+        heads.mask_roi_pool = None  # so that RoIHeads draws none
+    for part in parts:
         part.requires_grad_(requires_grad=False)

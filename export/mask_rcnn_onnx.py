@@ -26,6 +26,7 @@ from export.weights import mean_weights
 from nostalgin_core import session
 from nostalgin_core.segment.segment import prepared
 
+_MODELS = Path(nostalgin_core.__file__).parent / "models"
 OPSET = 17
 THINGS = ("boxes", "labels", "scores", "masks")
 OUTPUTS = (*THINGS, "pixels")
@@ -87,9 +88,12 @@ def disparity(
 
 def open_shipped() -> session.Session:
     """Open the network that ships with the core, checked against its lock."""
-    folder = Path(nostalgin_core.__file__).parent / "models"
-    sums = json.loads((folder / "models.lock").read_text())
-    return session.load((folder / "segment.onnx").read_bytes(), sums["segment.onnx"])
+    return session.load((_MODELS / "segment.onnx").read_bytes(), locked())
+
+
+def locked() -> str:
+    """Return the checksum that the network which ships is promised to have."""
+    return json.loads((_MODELS / "models.lock").read_text())["segment.onnx"]
 
 
 def main() -> None:

@@ -14,6 +14,7 @@ from torch import Tensor
 from export.blemishes import blemished
 from export.cells import Cells, cells
 from export.copy_paste import Donor, paste
+from export.rare import rare
 from export.segmentation_data import (
     UNSCORED,
     Sample,
@@ -47,6 +48,9 @@ class Schedule:
     seed: int = 0
     answering: tuple[Category, ...] = CATEGORIES  # the paper's two networks share these
     branch_only: bool = False  # all else stays as it is, boxes and masks to the bit
+    boxes_only: bool = False  # proposals and boxes learn; features, masks, branch stay
+    dropout: float = 0.0  # share of what boxes are told apart by that is lost a step
+    rare: float = 0.0  # share of photos that are made one of a rare kind
 
     def rate_at(self, step: int) -> float:
         """Return the learning rate of a step."""
@@ -106,6 +110,8 @@ def dressed(
         sample = view(pool[int(rng.integers(len(pool)))], rng, short_px=short_px)
         if rng.random() < 0.5:
             sample = tilted(sample, rng)
+        if schedule.rare and rng.random() < schedule.rare:
+            sample = rare(sample, rng)
         if rng.random() < 0.5:
             sample = paste(sample, cut, rng)
         sample = blemished(sample, rng)

@@ -57,6 +57,11 @@ class SemanticBranch(nn.Module):
         self.middle = nn.Sequential(*_layer(WIDTH), *_layer(WIDTH))
         self.top = nn.Sequential(*_layer(WIDTH), nn.Conv2d(WIDTH, KINDS + 1, 1))
 
+    @property
+    def learning(self) -> bool:
+        """Tell whether anything in it may change."""
+        return any(p.requires_grad for p in self.parameters())
+
     def forward(self, taps: Mapping[str, Tensor], pyramid: Sequence[Tensor]) -> Tensor:
         """Map taps and levels, finest first, to logits (n, 4, h / 4, w / 4)."""
         parts = [level(x) for level, x in zip(self.levels, pyramid, strict=True)]

@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
+from torch.nn import functional
 
 from export.ahead import ahead
 from export.copy_paste import donors
@@ -54,11 +55,29 @@ def begin(
     """Set up a run from weights; optimiser and average start anew."""
     torch.manual_seed(schedule.seed)
     network = load_weights(MaskRCNN(), weights).to(device)
-    freeze(network, but_branch=schedule.branch_only)
+    freeze(network, but_branch=schedule.branch_only, but_boxes=schedule.boxes_only)
+    forgetful(network, schedule.dropout)
     learning = [p for p in network.parameters() if p.requires_grad]
     optimiser = torch.optim.AdamW(learning, lr=schedule.rate, weight_decay=1e-3)
     average = {k: v.detach().clone() for k, v in network.state_dict().items()}
     return Run(network, average, optimiser)
+
+
+def forgetful(network: MaskRCNN, share: float) -> None:
+    """Let a share of what boxes are told apart by be lost in training.
+
+    Srivastava et al., "Dropout", JMLR 2014. It is a hook on the box head, so that
+    weights keep their names and a network that is asked loses nothing. Raises
+    ValueError unless 0 <= share < 1.
+    """
+    if not 0 <= share < 1:
+        raise ValueError(f"dropout is a share below 1, not {share}")
+
+    def lost(head: nn.Module, _: object, told: Tensor) -> Tensor:
+        return functional.dropout(told, share, training=head.training)
+
+    if share > 0:
+        network.roi_heads.box_head.register_forward_hook(lost)
 
 
 def advance(run: Run, schedule: Schedule, seen: Sequence[Seen]) -> dict[str, float]:
@@ -152,22 +171,32 @@ def judge(run: Run, data: Path, schedule: Schedule) -> dict[str, dict[str, float
         samples = read_folder(data / name, held_out=True)
         if not schedule.branch_only:
             rows[name] = figures(as_callable(network), samples)
-        rows[f"{name} pixels"] = pixel_figures(pixels_alone(network), samples)
+        if not schedule.boxes_only:
+            rows[f"{name} pixels"] = pixel_figures(pixels_alone(network), samples)
     return rows
+
+
+def planned(args: argparse.Namespace) -> Schedule:
+    """Return the schedule that was asked for."""
+    return Schedule(
+        steps=args.steps,
+        rate=args.rate,
+        batch=args.batch,
+        short_px=tuple(args.short_px),
+        seed=args.seed,
+        answering=tuple(args.answering),
+        branch_only=args.branch_only,
+        boxes_only=args.boxes_only,
+        dropout=args.dropout,
+        rare=args.rare,
+    )
 
 
 def main() -> None:
     """Train, log, measure on what is kept out, and keep checkpoints."""
     args = _arguments()
     torch.set_num_threads(args.threads)
-    schedule = Schedule(
-        steps=args.steps,
-        rate=args.rate,
-        batch=args.batch,
-        seed=args.seed,
-        answering=tuple(args.answering),
-        branch_only=args.branch_only,
-    )
+    schedule = planned(args)
     pools, real = pooled(args)
     cut = donors(real)
     args.into.mkdir(parents=True, exist_ok=True)
@@ -193,13 +222,20 @@ def main() -> None:
     save(run, args.into / "last.pt")
 
 
-def _arguments() -> argparse.Namespace:
+def _arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     usual = Schedule()
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--start", type=Path, required=True, help=".npz or .onnx")
     parser.add_argument("--branch", type=Path, help="trial's .npz, if start has none")
-    parser.add_argument("--branch-only", action="store_true", help="hold all else")
+    alone = parser.add_mutually_exclusive_group()
+    alone.add_argument("--branch-only", action="store_true", help="hold all else")
+    alone.add_argument("--boxes-only", action="store_true", help="hold all else")
+    parser.add_argument("--dropout", type=float, default=usual.dropout, help="of boxes")
+    parser.add_argument(
+        "--rare", type=float, default=usual.rare, help="share of photos"
+    )
+    parser.add_argument("--short-px", type=int, nargs=2, default=usual.short_px)
     parser.add_argument("--into", type=Path, required=True, help="logs, checkpoints")
     parser.add_argument("--painted", type=Path, help="folder of painted photos")
     parser.add_argument("--pseudo", type=Path, help="folder of pseudo labels")
@@ -215,7 +251,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--save-every", type=int, default=50)
     parser.add_argument("--judge-every", type=int, default=250)
-    return parser.parse_args()
+    return parser.parse_args(given)
 
 
 if __name__ == "__main__":

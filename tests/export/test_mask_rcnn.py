@@ -21,9 +21,12 @@ from export.mask_rcnn import MaskRCNN, freeze, load_weights  # noqa: E402
 from export.segmentation_data import UNSCORED, fill  # noqa: E402
 from export.segmentation_samples import Schedule, drawn, dressed  # noqa: E402
 from export.train_mask_rcnn import (  # noqa: E402
+    _arguments,
     advance,
     averaged,
     begin,
+    forgetful,
+    planned,
     resume,
     save,
 )
@@ -130,6 +133,89 @@ def test_a_branch_that_learns_alone_leaves_boxes_and_masks_as_they_are() -> None
         )
 
 
+BOXES = replace(SHORT, boxes_only=True, dropout=0.3, rare=0.5)
+
+
+def test_boxes_that_learn_alone_leave_features_masks_and_pixels_as_they_are() -> None:
+    run = begin(_weights(), BOXES)
+    before = {k: v.clone() for k, v in run.network.state_dict().items()}
+    losses = advance(run, BOXES, drawn(POOLS, CUT, run.step, BOXES))
+    assert set(losses) == {
+        "loss_objectness",
+        "loss_rpn_box_reg",
+        "loss_classifier",
+        "loss_box_reg",
+    }
+    learning = ("rpn.", "roi_heads.box_head.", "roi_heads.box_predictor.")
+    for name, value in run.network.state_dict().items():
+        assert torch.equal(value, before[name]) == (not name.startswith(learning)), name
+    assert set(averaged(run).state_dict()) == set(before)  # and can be shipped
+
+
+def test_boxes_and_branch_cannot_both_learn_alone() -> None:
+    with pytest.raises(ValueError, match="nothing to learn"):
+        freeze(MaskRCNN(), but_branch=True, but_boxes=True)
+    flags = ["--data", "d", "--start", "s", "--into", "i"]
+    with pytest.raises(SystemExit):
+        _arguments([*flags, "--branch-only", "--boxes-only"])
+
+
+def test_what_is_asked_for_on_the_command_line_is_what_is_planned() -> None:
+    flags = ["--data", "d", "--start", "s", "--into", "i"]
+    assert planned(_arguments(flags)) == Schedule()
+    flags += ["--boxes-only", "--dropout", "0.3", "--rare", "0.4"]
+    flags += ["--short-px", "300", "640", "--steps", "9"]
+    assert planned(_arguments(flags)) == Schedule(
+        steps=9, boxes_only=True, dropout=0.3, rare=0.4, short_px=(300, 640)
+    )
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.6])
+def test_dropout_loses_its_share_in_training_and_nothing_when_asked(
+    share: float,
+) -> None:
+    network, plain = (load_weights(MaskRCNN(), _weights()) for _ in range(2))
+    forgetful(network, share)
+    told = torch.rand(64, 128 * 49)
+    head, bare = network.roi_heads.box_head, plain.roi_heads.box_head
+    with torch.no_grad():
+        whole = bare(told.view(64, 128, 7, 7))
+        assert torch.equal(head.eval()(told.view(64, 128, 7, 7)), whole)
+        some = head.train()(told.view(64, 128, 7, 7))
+    kept = some != 0
+    told_of = whole != 0
+    assert 1 - kept[told_of].float().mean() == pytest.approx(share, abs=0.02)
+    torch.testing.assert_close(some[kept], whole[kept] / (1 - share))
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.0])
+def test_dropout_is_a_share_below_one(share: float) -> None:
+    with pytest.raises(ValueError, match="share below 1"):
+        forgetful(MaskRCNN(), share)
+
+
+def test_rare_kinds_are_drawn_where_they_are_asked_for_and_repeat() -> None:
+    def shown(share: float) -> list[bytes]:
+        schedule = replace(SHORT, rare=share)
+        steps = range(12)
+        return [drawn(POOLS, CUT, i, schedule)[0].image.tobytes() for i in steps]
+
+    assert shown(1.0) == shown(1.0)
+    assert all(a != b for a, b in zip(shown(0.0), shown(1.0), strict=True))
+
+
+def test_the_average_is_the_mean_it_claims() -> None:
+    run = begin(_weights(), BOXES)
+    name = "rpn.head.cls_logits.weight"
+    want = run.network.state_dict()[name].clone()
+    for step in range(1, 4):
+        advance(run, BOXES, drawn(POOLS, CUT, run.step, BOXES))
+        decay = min(BOXES.decay, (1 + step) / (10 + step))
+        want = decay * want + (1 - decay) * run.network.state_dict()[name]
+    torch.testing.assert_close(run.average[name], want)
+    assert not torch.equal(run.average[name], run.network.state_dict()[name])
+
+
 def test_pixels_alone_are_the_whole_networks() -> None:
     network = load_weights(MaskRCNN(), _weights()).eval()
     gray = np.random.default_rng(1).uniform(0, 255, (1, 1, 96, 128))
@@ -152,16 +238,19 @@ def test_cells_themselves_are_judged_perfect() -> None:
     assert row["occluders"] > 0.98
 
 
-def test_a_run_that_was_cut_off_ends_where_the_whole_one_does(tmp_path: Path) -> None:
-    whole, parts = begin(_weights(), SHORT), begin(_weights(), SHORT)
+@pytest.mark.parametrize("schedule", [SHORT, BOXES], ids=["all", "boxes"])
+def test_a_run_that_was_cut_off_ends_where_the_whole_one_does(
+    tmp_path: Path, schedule: Schedule
+) -> None:
+    whole, parts = begin(_weights(), schedule), begin(_weights(), schedule)
     for _ in range(4):
-        advance(whole, SHORT, drawn(POOLS, CUT, whole.step, SHORT))
+        advance(whole, SHORT, drawn(POOLS, CUT, whole.step, schedule))
     for _ in range(2):
-        advance(parts, SHORT, drawn(POOLS, CUT, parts.step, SHORT))
+        advance(parts, SHORT, drawn(POOLS, CUT, parts.step, schedule))
     save(parts, tmp_path / "last.pt")
-    parts = resume(tmp_path / "last.pt", SHORT)
+    parts = resume(tmp_path / "last.pt", schedule)
     for _ in range(2):
-        advance(parts, SHORT, drawn(POOLS, CUT, parts.step, SHORT))
+        advance(parts, SHORT, drawn(POOLS, CUT, parts.step, schedule))
     assert parts.step == whole.step == 4
     for name, value in whole.average.items():
         assert torch.equal(value, parts.average[name]), name
