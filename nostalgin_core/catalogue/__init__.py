@@ -11,17 +11,21 @@ from nostalgin_core.catalogue.catalogue import (
     read,
     unknown,
 )
-from nostalgin_core.catalogue.entry import Entry, from_file_name, inside
+from nostalgin_core.catalogue.entry import Entry, from_file_name, inside, stem
+from nostalgin_core.catalogue.naming import NAMELESS, Naming
 from nostalgin_core.catalogue.rings import fronts
 
 __all__ = [
+    "NAMELESS",
     "Catalogue",
     "Entry",
+    "Naming",
     "from_file_name",
     "fronts",
     "inside",
     "matched",
     "plain",
     "read",
+    "stem",
     "unknown",
 ]

@@ -18,9 +18,11 @@ from typing import Any, Final
 
 from nostalgin_core.catalogue.entry import (
     Entry,
+    Named,
     from_cells,
     from_file_name,
     round_the_corner,
+    stem,
 )
 from nostalgin_core.records import Rejection
 
@@ -86,21 +88,22 @@ def read(
     *,
     name: str = "catalogue",
     first: int = FIRST_ROW,
+    named: Named = from_file_name,
 ) -> Catalogue:
     """Read the rows of a catalogue, each by itself; empty ones are only counted.
 
     What stands beyond the last column is found under None or no name, as `csv` has it.
     """
-    given: list[dict[Any, Any]] = [dict(row) for row in rows]
-    listed = [{key: cell for key, cell in row.items() if key} for row in given]
-    every = list(dict.fromkeys(key for row in listed for key in row))
+    given: list[Mapping[Any, Any]] = list(rows)
+    every = list(dict.fromkeys(key for row in given for key in row if key))
     columns = _columns(every)
     warnings = [
         f"{name}: column {_shown(column)} is not known; it is kept"
         for column in unknown(every)
     ]
     entries, rejections = [], []
-    for number, (row, whole) in enumerate(zip(listed, given, strict=True), first):
+    for number, whole in enumerate(given, first):
+        row = {key: cell for key, cell in whole.items() if key}
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
         if cells.get("photo"):
             cells["photo"] = str(row[columns["photo"]])  # blanks may be of its name
@@ -109,7 +112,7 @@ def read(
         try:
             _check_width(whole)
             _check_lengths(row)
-            entry, doubts = from_cells(cells, number)
+            entry, doubts = from_cells(cells, number, named=named)
         except ValueError as problem:
             reason, _, detail = str(problem).partition(": ")
             rejections.append(
@@ -129,7 +132,10 @@ def unknown(columns: Iterable[str]) -> list[str]:
 
 
 def matched(
-    entries: Sequence[Entry], photos: Sequence[str]
+    entries: Sequence[Entry],
+    photos: Sequence[str],
+    *,
+    named: Named = from_file_name,
 ) -> tuple[dict[str, tuple[Entry, ...]], tuple[Rejection, ...]]:
     """Find each photo's rows: those that name its path, or else just its name.
 
@@ -148,16 +154,16 @@ def matched(
         if where in paths:
             by_path[where].append(entry)
         if entry.photo and ("/" not in where or where not in paths):
-            by_name[PurePosixPath(where).name].append(entry)
+            by_name[_last(where)].append(entry)
         by_lot[entry.block, entry.lot].append(entry)
     found, rejections = {}, []
     known = {entry.block for entry in entries}
     blocks = sorted(known, key=lambda one: (len(one), one))
     shown = ", ".join(blocks[:NAMED]) + (" ..." if len(blocks) > NAMED else "")
     for photo in photos:
-        lot = from_file_name(photo)
+        lot = named(photo)
         where = _path(photo)
-        rows = by_path.get(where) or by_name.get(PurePosixPath(where).name)
+        rows = by_path.get(where) or by_name.get(_last(where))
         rows = rows or (by_lot.get(lot) if lot else None)
         if rows:
             found[photo] = tuple(rows)
@@ -228,7 +234,15 @@ def _text(cell: object) -> str:
     return str(cell if cell is not None else "").strip()
 
 
+def _last(path: str) -> str:
+    """Give the last name of a path that `_path` wrote."""
+    return path if "/" not in path and path != "." else PurePosixPath(path).name
+
+
 def _path(photo: str) -> str:
     """Write a photo's path as it is compared; some disks part letters and accents."""
-    path = PurePosixPath(unicodedata.normalize("NFC", photo).replace("\\", "/"))
-    return (path.parent / path.stem.strip()).as_posix().casefold()
+    path = unicodedata.normalize("NFC", photo).replace("\\", "/")
+    if "/" not in path and path.strip(" ."):
+        return stem(path).strip().casefold() or "."
+    whole = PurePosixPath(path)
+    return (whole.parent / whole.stem.strip()).as_posix().casefold()

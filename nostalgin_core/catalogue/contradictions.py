@@ -5,12 +5,14 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.catalogue.entry import Entry, from_file_name
+from nostalgin_core.catalogue.entry import Entry, Named, from_file_name
 
 WIDEST: Final = 60  # numbers of one lot: thirty doors
 
 
-def contradictions(rows: Sequence[Entry]) -> Iterator[str]:
+def contradictions(
+    rows: Sequence[Entry], *, named: Named = from_file_name
+) -> Iterator[str]:
     """Name the rows of one block that were written twice, or for another lot's photo.
 
     A photo's name tells its lot only in an archive that names its files so.
@@ -25,11 +27,11 @@ def contradictions(rows: Sequence[Entry]) -> Iterator[str]:
                 f"block {row.block}, lot {row.lot}: row {first} and row {row.row} say "
                 "the same; delete one of them"
             )
-        named = from_file_name(row.photo)
-        if named is not None and named != (row.block, row.lot):
+        told = named(row.photo)
+        if told is not None and told != (row.block, row.lot):
             yield (
                 f"block {row.block}, lot {row.lot}: row {row.row} names {row.photo}, "
-                f"by its name a photo of block {named[0]}, lot {named[1]}; mend the "
+                f"by its name a photo of block {told[0]}, lot {told[1]}; mend the "
                 "lot or the photo"
             )
 

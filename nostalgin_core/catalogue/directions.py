@@ -11,6 +11,7 @@ numbers run opposite ways round. The surest street is settled first, and then co
 its opposites.
 """
 
+import heapq
 from collections.abc import Collection, Sequence
 
 Law = dict[str, int]
@@ -35,29 +36,34 @@ def directions(
                 votes[street] = votes.get(street, 0.0) + parity * pairs
     law: Law = {}
     warnings = []
-    while len(law) < len(votes):
-        street = min(
-            (s for s in votes if s not in law), key=lambda s: (-abs(votes[s]), s)
-        )
+    across = _opposites(rings)
+    waiting = [(-abs(vote), street) for street, vote in votes.items()]
+    heapq.heapify(waiting)
+    while waiting:
+        vote, street = heapq.heappop(waiting)
+        if street in law or vote != -abs(votes[street]):
+            continue  # its vote has changed since, and waits with that
         law[street] = 1 if votes[street] >= 0 else -1
         if votes[street] == 0 and (ruled is None or street in ruled):
             warnings.append(
                 f"{street}: nothing tells which way its numbers run; give its rows a "
                 "side and an order if it is built backwards"
             )
-        for other, parities in _opposites(rings, street):
+        for other, parities in across.get(street, ()):
             votes[other] -= OPPOSITE_VOTES * law[street] * parities
+            heapq.heappush(waiting, (-abs(votes[other]), other))
     return law, tuple(warnings)
 
 
 def _opposites(
-    rings: Sequence[Sequence[SideFacts | None]], street: str
-) -> list[tuple[str, int]]:
-    """List the streets across a block, with the product of both parities."""
-    pairs = []
+    rings: Sequence[Sequence[SideFacts | None]],
+) -> dict[str, list[tuple[str, int]]]:
+    """List for each street those across a block, with the product of both parities."""
+    pairs: dict[str, list[tuple[str, int]]] = {}
     for ring in rings:
         for index, fact in enumerate(ring):
             across = ring[(index + 2) % 4] if len(ring) == 4 else None
-            if fact is not None and across is not None and fact[0] == street:
-                pairs.append((across[0], fact[1] * across[1]))
+            if fact is not None and across is not None:
+                other = (across[0], fact[1] * across[1])
+                pairs.setdefault(fact[0], []).append(other)
     return pairs

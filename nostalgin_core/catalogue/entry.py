@@ -6,7 +6,7 @@ another street is a corner lot's second front: the lot's depth is its width ther
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Final
@@ -20,6 +20,7 @@ from nostalgin_core.catalogue.lengths import (
     number,
 )
 
+Named = Callable[[str], tuple[str, str] | None]  # what a file's name tells
 TAX_PHOTO: Final = re.compile(r"(?:^|_)(\d{5})_(\d{4})([a-z]?)$")
 
 
@@ -43,7 +44,18 @@ class Entry:
     storeys: float | None = None  # of the building, as the list counts them
 
 
-def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
+def from_file_name(name: str) -> tuple[str, str] | None:
+    """Read block and lot from a tax photo's name: ..._00993_0008a.jpg is ("993", "8").
+
+    The letter counts further views of the same lot.
+    """
+    found = TAX_PHOTO.search(stem(name.replace("\\", "/")).strip())
+    return (str(int(found[1])), str(int(found[2]))) if found else None
+
+
+def from_cells(
+    cells: Mapping[str, str], row: int, *, named: Named = from_file_name
+) -> tuple[Entry, list[str]]:
     """Make an entry of one row's cells, and list what is doubtful about them.
 
     Raises:
@@ -54,7 +66,7 @@ def from_cells(cells: Mapping[str, str], row: int) -> tuple[Entry, list[str]]:
         raise ValueError(
             f"path outside the photo folder: {photo!r}; write a path inside it"
         )
-    block, lot = _lot(cells, photo)
+    block, lot = _lot(cells, photo, named)
     width_m, doubts = length(cells, "width_m", "frontage_ft")
     depth_m, more = length(cells, "depth_m", "depth_ft")
     later = later_building(cells)
@@ -104,23 +116,26 @@ def round_the_corner(entry: Entry, cells: Mapping[str, str]) -> list[Entry]:
     ]
 
 
-def from_file_name(name: str) -> tuple[str, str] | None:
-    """Read block and lot from a tax photo's name: ..._00993_0008a.jpg is ("993", "8").
+def stem(path: str) -> str:
+    """Give a path's last name without its suffix, as `pathlib` does, ten times faster.
 
-    The letter counts further views of the same lot.
+    Of an archive's photos a million are looked at.
     """
-    found = TAX_PHOTO.search(PurePosixPath(name.replace("\\", "/")).stem.strip())
-    return (str(int(found[1])), str(int(found[2]))) if found else None
+    if path.endswith((".", "/")):
+        return PurePosixPath(path).stem
+    name = path[path.rfind("/") + 1 :]
+    dot = name.rfind(".")
+    return name[:dot] if dot > 0 else name
 
 
-def _lot(cells: Mapping[str, str], photo: str) -> tuple[str, str]:
+def _lot(cells: Mapping[str, str], photo: str, named: Named) -> tuple[str, str]:
     """Read block and lot: from their columns, the BBL, or the photo's own name."""
     block, lot = _trimmed(cells.get("block", "")), _trimmed(cells.get("lot", ""))
     bbl = re.fullmatch(r"\d-?(\d{5})-?(\d{4})", cells.get("bbl", ""))
     if not (block and lot) and bbl:
         block, lot = str(int(bbl[1])), str(int(bbl[2]))
     if not (block and lot):
-        block, lot = from_file_name(photo) or (block, lot)
+        block, lot = named(photo) or (block, lot)
     if not (block and lot):
         lacking = "block" if not block else "lot"
         raise ValueError(f"no {lacking}: fill in the cell, or delete the row")
@@ -133,7 +148,8 @@ def _lot(cells: Mapping[str, str], photo: str) -> tuple[str, str]:
 
 def _trimmed(number: str) -> str:
     """Drop leading zeros, and the ".0" that a spreadsheet adds."""
-    number = re.sub(r"^(\d+)\.0+$", r"\1", number)
+    if "." in number:
+        number = re.sub(r"^(\d+)\.0+$", r"\1", number)
     return number.lstrip("0") if number.strip("0") and number.isdecimal() else number
 
 
@@ -143,6 +159,8 @@ def inside(photo: str, *, windows: bool = False) -> bool:
     Drives and backslashes lead somewhere on `windows` alone; elsewhere they are letters
     of a name.
     """
+    if not windows and "/" not in photo and "\0" not in photo:
+        return photo != ".."  # as nearly all are
     path = PurePosixPath(photo.replace("\\", "/") if windows else photo)
     drive = windows and len(photo) > 1 and photo[1] == ":"
     return not (path.is_absolute() or drive or ".." in path.parts or "\0" in photo)

@@ -27,7 +27,7 @@ from nostalgin_core.catalogue.contradictions import contradictions
 from nostalgin_core.catalogue.crowded import uncrowded
 from nostalgin_core.catalogue.cuts import lone, split
 from nostalgin_core.catalogue.directions import Law, directions
-from nostalgin_core.catalogue.entry import Entry
+from nostalgin_core.catalogue.entry import Entry, Named, from_file_name
 from nostalgin_core.catalogue.faces import Faces, faces
 from nostalgin_core.catalogue.lengths import assumed_width
 from nostalgin_core.catalogue.sides import sides_of, unwrapped, with_empty_sides
@@ -88,7 +88,9 @@ class _Inferred:
         return made
 
 
-def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]]:
+def fronts(
+    entries: Sequence[Entry], *, named: Named = from_file_name
+) -> tuple[tuple[Front, ...], tuple[str, ...]]:
     """Order all lots of a catalogue; return its fronts, block by block, and warnings.
 
     Where every row of a block gives its `side`, those are taken as they are.
@@ -101,7 +103,7 @@ def fronts(entries: Sequence[Entry]) -> tuple[tuple[Front, ...], tuple[str, ...]
     inferred: dict[str, _Inferred] = {}
     for block, rows in blocks.items():
         some, doubts = spots(rows)
-        warnings += [*contradictions(rows), *doubts]
+        warnings += [*contradictions(rows, named=named), *doubts]
         if all(spot.side is not None for spot in some):
             given[block] = as_given(some)
             continue
@@ -201,7 +203,7 @@ def distinct(made: Sequence[Front]) -> tuple[Front, ...]:
             count += 1
             name = f"{front.front_id}-{count}"
         used.add(name)
-        unique.append(replace(front, front_id=name))
+        unique.append(front if count == 1 else replace(front, front_id=name))
     return tuple(unique)
 
 

@@ -17,9 +17,9 @@ from jaxtyping import Float
 
 from nostalgin_core.arrays import Gray
 from nostalgin_core.placard import spacing
+from nostalgin_core.placard.misread import BOROUGHS
 from nostalgin_core.records import Box, Instance, Photo, Placard, Rejection
 
-BOROUGHS: Final = "MXBKQR"  # Manhattan, Bronx (X, B), Brooklyn (K, B), Queens, Richmond
 LETTER_PX: Final = 40.0  # the height to which a board's letters are brought
 LEAST_SCORE: Final = 0.6  # of the least sure piece
 
@@ -58,7 +58,7 @@ def read(photo: Photo, board: Instance | None, ocr: Ocr) -> Placard | Rejection:
     lower = (Box(frame.x0, middle, frame.x1, frame.y1), 2.0)
     seen: list[str] = []
     for box, scale in [*places, lower]:
-        pieces = _pieces(photo.image, box, scale, ocr)
+        pieces = pieces_in(photo.image, box, scale, ocr)
         for line in lines(pieces):
             found = _placard(line)
             # A range of house numbers on a sign is no board: there, ask for the letter.
@@ -119,6 +119,17 @@ def lines(pieces: Sequence[Piece]) -> list[list[Piece]]:
     Each line is given whole first, then its shorter runs, longest first: signs beside
     the board stand on its line, too.
     """
+    runs = [
+        line[i : i + n]
+        for line in whole_lines(pieces)
+        for n in range(len(line), 0, -1)
+        for i in range(len(line) - n + 1)
+    ]
+    return sorted(runs, key=len, reverse=True)
+
+
+def whole_lines(pieces: Sequence[Piece]) -> list[list[Piece]]:
+    """Group pieces that stand on one line, each line from left to right."""
     rest = sorted(pieces, key=lambda p: -_height(p))
     grouped: list[list[Piece]] = []
     while rest:
@@ -126,13 +137,7 @@ def lines(pieces: Sequence[Piece]) -> list[list[Piece]]:
         line = [p for p in rest if _on_line(first, p)]
         rest = [p for p in rest if not _on_line(first, p)]
         grouped.append(sorted(line, key=lambda p: float(p.corners[:, 0].mean())))
-    runs = [
-        line[i : i + n]
-        for line in grouped
-        for n in range(len(line), 0, -1)
-        for i in range(len(line) - n + 1)
-    ]
-    return sorted(runs, key=len, reverse=True)
+    return grouped
 
 
 def _height(piece: Piece) -> float:
@@ -204,7 +209,7 @@ def _crops(board: Box, frame: Box) -> Iterable[tuple[Box, float]]:
         )
 
 
-def _pieces(image: Gray, box: Box, scale: float, ocr: Ocr) -> list[Piece]:
+def pieces_in(image: Gray, box: Box, scale: float, ocr: Ocr) -> list[Piece]:
     """Read a part of the photo, enlarged; corners come back in photo pixels."""
     part = image[box.y0 : box.y1, box.x0 : box.x1]
     if min(part.shape) == 0:
