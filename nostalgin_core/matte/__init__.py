@@ -5,5 +5,6 @@ Paper: sections 3.2 and 4.1, closed-form matting. Open `matte` first.
 """
 
 from nostalgin_core.matte.matte import fronts, matte
+from nostalgin_core.matte.redrawn import redrawn
 
-__all__ = ["fronts", "matte"]
+__all__ = ["fronts", "matte", "redrawn"]

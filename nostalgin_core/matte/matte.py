@@ -72,6 +72,36 @@ def matte(
     if isinstance(found, Rejection):
         return found
     instances, facades = found
+    built = [one for one in instances if one.category == "facade"]
+    return softened(
+        photo,
+        instances,
+        facades,
+        highest(built, photo.image.shape),
+        least=least,
+        facade_px=facade_px,
+        occluder_px=occluder_px,
+        epsilon=epsilon,
+        belief=belief,
+    )
+
+
+def softened(
+    photo: Photo,
+    instances: Sequence[Instance],
+    facades: Sequence[Facade],
+    likely: Probability,
+    *,
+    least: float,
+    facade_px: tuple[float, float],
+    occluder_px: tuple[float, float],
+    epsilon: float,
+    belief: float,
+) -> Matted:
+    """Give arranged fronts their soft visible membership, as `matte` has it.
+
+    `likely` is how probably each pixel of the photo is of a front.
+    """
     shape = photo.image.shape
     x0, y0, x1, y1 = photo.frame
     cut = np.s_[y0:y1, x0:x1]
@@ -82,8 +112,7 @@ def matte(
     built = np.any(wholes, axis=0)
     near = grown(built, facade_px[1])
     hidden = _hidden(solve, highest(hiders, shape)[cut], near, least, occluder_px)
-    likely = highest([i for i in instances if i.category == "facade"], shape)[cut]
-    common = solve(*outline(built, likely, hidden, px=facade_px))
+    common = solve(*outline(built, likely[cut], hidden, px=facade_px))
     seen = common * (1.0 - hidden)
     alphas = _shared(solve, wholes, seen, facade_px)
     hiding = _placed(hidden, cut, shape)

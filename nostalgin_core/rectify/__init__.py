@@ -5,8 +5,9 @@ the `Standpoint` of the camera that each elevation tells.
 Paper: section 3.3. Open `rectify` first, then `orient`.
 """
 
+from nostalgin_core.rectify.drawn import drawn
 from nostalgin_core.rectify.legible import sharpness, stretched
 from nostalgin_core.rectify.rectify import rectify
 from nostalgin_core.rectify.standpoint import standpoint
 
-__all__ = ["rectify", "sharpness", "standpoint", "stretched"]
+__all__ = ["drawn", "rectify", "sharpness", "standpoint", "stretched"]
