@@ -58,7 +58,7 @@ def two_fronted(
     """
     found = set()
     for photo, names in candidates.items():
-        usable = [one for one in seen if one.photo == photo and not _fault(one)]
+        usable = [one for one in seen if one.photo == photo and not fault(one)]
         own = [front for front in fronts if front.front_id in names]
         sure = _sure(usable)
         if len({building(front) for front in own}) == 1 and len(sure) >= 2:
@@ -114,9 +114,9 @@ def _of_photo(
     targets = [one for one in seen if one.target]
     if not targets:
         return rejected("no target", "none of its facades is the one it is a record of")
-    usable = [one for one in targets if not _fault(one)]
+    usable = [one for one in targets if not fault(one)]
     if not usable:
-        return rejected("no usable target", _fault(targets[0]))
+        return rejected("no usable target", fault(targets[0]))
     sure = _sure(usable)
     pairs = _corner_pair(fronts)
     if len(sure) >= 2 and pairs:
@@ -126,7 +126,7 @@ def _of_photo(
     return [_given(_main(fronts), best)]
 
 
-def _fault(one: Seen) -> str:
+def fault(one: Seen) -> str:
     """Say why a facade is of no use; empty if it is."""
     if one.area_px < ENOUGH_PX:
         return f"facade {one.facade} has {one.area_px:.0f} pixels: too few to see it"

@@ -12,7 +12,7 @@ from statistics import median
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core.address import house_numbers, street_width
+from nostalgin_core.address import house_numbers, plain_name, street_width
 from nostalgin_core.arrays import Points
 from nostalgin_core.block import heights
 from nostalgin_core.block.chain import Footprint, Ring, chain
@@ -44,8 +44,11 @@ def block(
     *,
     copied: bool = False,
     heights_m: Mapping[str, float] | None = None,
+    widths_m: Mapping[str, float] | None = None,
 ) -> Block:
     """Build the cuboids of one block, ring by ring, in the order of its fronts.
+
+    `widths_m` are of streets, by casefolded name: one that cuts the block is so wide.
 
     Raises:
         ValueError: if there are no fronts.
@@ -59,7 +62,7 @@ def block(
         [front for front in fronts if front.ring == ring]
         for ring in sorted({front.ring for front in fronts})
     ]
-    placed = laid_out(list(zip(chained(rings), rings, strict=True)))
+    placed = laid_out(list(zip(chained(rings), rings, strict=True)), widths_m or {})
     footprints = _distinct([one for ring in placed for one in ring.footprints])
     buildings = raised(
         footprints, shown, guessed, heights_m or {}, fronts, copied=copied
@@ -174,11 +177,13 @@ def chained(rings: Sequence[Sequence[Front]]) -> list[Ring]:
     ]
 
 
-def laid_out(rings: Sequence[tuple[Ring, Sequence[Front]]]) -> list[Ring]:
+def laid_out(
+    rings: Sequence[tuple[Ring, Sequence[Front]]], widths_m: Mapping[str, float]
+) -> list[Ring]:
     """Turn and move rings so that each faces one that lies already, the first as is."""
     placed: list[Ring] = []
     for ring, fronts in rings:
-        opposite = _facing(ring, fronts, placed, rings)
+        opposite = _facing(ring, fronts, placed, rings, widths_m)
         placed.append(opposite or _beside(ring, placed))
     return placed
 
@@ -188,6 +193,7 @@ def _facing(
     fronts: Sequence[Front],
     placed: Sequence[Ring],
     rings: Sequence[tuple[Ring, Sequence[Front]]],
+    widths_m: Mapping[str, float],
 ) -> Ring | None:
     for other, (_, theirs) in zip(placed, rings, strict=False):
         cutting = cutting_streets([fronts, theirs])
@@ -196,7 +202,8 @@ def _facing(
         for a in mine:
             for b in yours:
                 if a.street == b.street:
-                    return face(ring, a, b, gap_m=street_width(a.street))
+                    told = widths_m.get(plain_name(a.street))
+                    return face(ring, a, b, gap_m=told or street_width(a.street))
     return None
 
 

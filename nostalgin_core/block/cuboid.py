@@ -26,15 +26,18 @@ def told(
     """List what the elevations of a building's fronts say of its height.
 
     `guessed` names the fronts whose widths nobody knows. An elevation whose wall and
-    proportions give a height that no building has says nothing.
+    proportions give a height that no building has says nothing; nor does one that a
+    neighbour lent, where the building's own speak (`nostalgin evaluate heights` tells
+    that they know better).
     """
     widths_m = edge_lengths(footprint)
-    return [
+    every = [
         Told(width_m, front_id in guessed, one)
         for width_m, front_id in zip(widths_m, footprint.front_ids, strict=True)
         for one in shown.get(front_id or "", ())
         if LOWEST_M <= width_m / one.aspect <= HIGHEST_M
     ]
+    return [one for one in every if not one.shown.lent] or every
 
 
 def counts(fronts: Sequence[Front]) -> dict[str, float]:

@@ -49,6 +49,7 @@ class Shown:
     score: float
     storeys: tuple[float, ...] = ()  # a score for each of `COUNTS`, if they were told
     clear: float = 1.0  # the share that a camera saw, and not smeared
+    lent: bool = False  # a neighbour's photograph, which may cut its top or side
 
 
 class Told(NamedTuple):

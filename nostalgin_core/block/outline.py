@@ -23,8 +23,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.optimize import minimize
 
 Numbers = Float[np.ndarray, " n"]
 Unknowns = np.ndarray  # a growth and a turn for each side, in units of their spread
@@ -111,7 +111,7 @@ def close(sides: Sequence[Measured]) -> tuple[Numbers, Numbers]:
         scale=np.concatenate([stretch_sd, turn_sd]),
         squeeze=stretch_sd / squeeze_sd,
     )
-    found = minimize(
+    found = scipy.optimize.minimize(  # which SciPy loads when it is first asked for
         lambda x: float(((traverse.weights(x) * x) ** 2).sum()),
         np.zeros(2 * len(sides)),
         jac=lambda x: 2 * traverse.weights(x) ** 2 * x,

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from nostalgin_core.address import house_numbers, street_width
 from nostalgin_core.records import Front
@@ -224,7 +224,11 @@ def fitted(side: Sequence[Piece], length_m: float) -> list[tuple[float, float]]:
 
     most = float(np.log(GROWTH)) / ASSUMED_SD**2
     least = float(np.log(length_m / 2 / width_m.sum()) / variance.min())
-    k = most if surplus(most) <= 0 else brentq(surplus, min(least, -1.0), most)
+    k = (
+        most
+        if surplus(most) <= 0
+        else scipy.optimize.brentq(surplus, min(least, -1.0), most)
+    )
     width_m = width_m * np.exp(variance * k)
     open_m = length_m - float(width_m.sum())
     if len(side) == 1 or open_m < DOUBT * length_m:

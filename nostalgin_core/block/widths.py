@@ -21,7 +21,7 @@ def elevations(
     for one in assignments:
         texture = (one.photo, one.facade)
         shown.setdefault(one.front_id, []).append(
-            Shown(texture, score=one.score, **aspects[texture])
+            Shown(texture, score=one.score, lent=one.lent, **aspects[texture])
         )
     return shown
 

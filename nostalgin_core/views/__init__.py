@@ -1,11 +1,31 @@
-"""Whether two elevations show one front, and how they lie over each other.
+"""Which front each facade shows, and how views of one front lie over each other.
 
-In: elevations, as pictures with what a camera saw of them. Out: the homography from one
-to the other, and the probability that both are of one front. Open `overlay` first.
+In: elevations, as pictures with what a camera saw of them, and where they stand in
+their photographs. Out: the homography from one to the other, the probability that both
+are of one front, and a `Claim` for each facade that shows a front of its ring. Open
+`claims` first, then `order` and `overlay`.
 """
 
+from nostalgin_core.views.agreement import Alike
+from nostalgin_core.views.claims import Claim, claimed
+from nostalgin_core.views.compare import compared
 from nostalgin_core.views.likeness import likeness, probability
-from nostalgin_core.views.marks import Marks, View, marks
+from nostalgin_core.views.marks import Marks, View, marks, seen_on
 from nostalgin_core.views.overlay import overlay
+from nostalgin_core.views.stretch import Stretch, stretch
 
-__all__ = ["Marks", "View", "likeness", "marks", "overlay", "probability"]
+__all__ = [
+    "Alike",
+    "Claim",
+    "Marks",
+    "Stretch",
+    "View",
+    "claimed",
+    "compared",
+    "likeness",
+    "marks",
+    "overlay",
+    "probability",
+    "seen_on",
+    "stretch",
+]

@@ -11,7 +11,9 @@ import cv2
 import numpy as np
 from jaxtyping import Float32
 
+from nostalgin_core import evidence
 from nostalgin_core.arrays import Gray, Mask
+from nostalgin_core.records import Elevation
 
 LONGEST_PX: Final = 500
 SHORTEST_PX: Final = 16  # a narrower strip bears none
@@ -25,6 +27,12 @@ class View(NamedTuple):
 
     image: Gray
     known: Mask
+
+
+def seen_on(elevation: Elevation) -> View:
+    """Take from an elevation what a camera saw of it."""
+    by_camera = (evidence.PHOTOGRAPHED, evidence.SOFT_EDGE)
+    return View(elevation.image, np.isin(elevation.evidence, by_camera))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -58,6 +58,16 @@ def test_rings_face_each_other_over_the_street_that_cuts_them() -> None:
     assert east.centroid.x > west.centroid.x
 
 
+@pytest.mark.parametrize("wide_m", [12.0, 44.0])
+def test_a_street_that_cuts_is_as_wide_as_it_is_told_to_be(wide_m: float) -> None:
+    told = {"broadway": wide_m, "south street": 5.0}
+    west, east = shapes(block.block("9", [*WEST, *EAST], [], {}, widths_m=told))
+    by_name = block.block("9", [*WEST, *EAST], [], {})
+    before = shapes(by_name)[0].distance(shapes(by_name)[1])
+    change = west.distance(east) - before
+    assert change == pytest.approx(wide_m - address.AVENUE_M, abs=0.5)
+
+
 def test_the_grid_goes_on_beyond_a_street_that_leans() -> None:
     built = block.block("9", [*WEST, *EAST], [], {})
     for outline in built.outline_m:

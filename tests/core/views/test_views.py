@@ -67,7 +67,7 @@ def test_two_fronts_with_the_same_windows_are_told_apart() -> None:
     found = overlay(marks(one), marks(two))
     if found is not None:
         alike = likeness(one, two, found.matrix)
-        assert probability(found.support, alike) < 0.8  # of one front: above 0.95
+        assert probability(found.support, alike) < 0.5
 
 
 def test_what_no_camera_saw_bears_no_marks() -> None:
