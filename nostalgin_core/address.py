@@ -29,6 +29,11 @@ def house_numbers(address: str) -> tuple[int, int] | None:
     return min(int(low), int(rest)), max(int(low), int(rest))
 
 
+def plain_name(street: str) -> str:
+    """Write a street's name in one way."""
+    return " ".join(street.casefold().split())
+
+
 def street_width(street: str) -> float:
     """Tell a street's width from front to front in metres, by its name alone."""
     words = {word.strip(".,") for word in street.casefold().split()}

@@ -108,6 +108,14 @@ class Matted:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """What somebody drew on a photo of the front that it is a record of."""
+
+    outline: Points | None  # of the whole front, what stands before it included
+    quad: Corners | None  # tl, tr, br, bl
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Elevation:
     """A facade seen straight on, with right aspect, at the source's resolution."""
 
@@ -206,6 +214,7 @@ class Assignment:
     photo: str
     facade: int
     score: float  # 0 to 1, comparable between photos of one front
+    lent: bool = False  # by a photograph that is a record of a neighbour
 
 
 Texture = tuple[str, int]  # a photo's key and a facade's index: an elevation

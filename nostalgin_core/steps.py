@@ -1,8 +1,8 @@
 """One photo through its stages, from its bytes to its elevations."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from nostalgin_core import (
     storeys,
 )
 from nostalgin_core.records import (
+    Drawn,
     Elevation,
     Facade,
     Instance,
@@ -27,6 +28,9 @@ from nostalgin_core.records import (
     Rejection,
     Seen,
 )
+
+UNDRAWN: Final = Drawn(None, None)
+DRAWN_TO_PX: Final = 1.0  # how surely a hand places a corner, in a photo shown whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +56,18 @@ class Stages:
 
 
 def steps(
-    data: bytes, networks: Networks, *, name: str, every: bool = True
+    data: bytes,
+    networks: Networks,
+    *,
+    name: str,
+    every: bool = True,
+    drawn: Drawn = UNDRAWN,
 ) -> Iterator[tuple[str, Any]]:
     """Yield each stage's word and its result, and end with a photo's rejection.
 
     Unless `every` facade is wanted, only the targets are inpainted, which is the
-    costliest stage; all of them where no target has an elevation.
+    costliest stage; all of them where no target has an elevation. What is `drawn` takes
+    the place of what was found.
 
     A caller that wants to know what a stage costs looks at its own clock between two
     results. A placard that can't be read stops nothing.
@@ -69,23 +79,44 @@ def steps(
     instances = segment.segment(picture, networks.segment)
     if isinstance(instances, Rejection):
         yield "segment", instances
-        return
+        if drawn.outline is None:
+            return
+        instances = ()
     instances = quantise.instances(instances)
     yield "segment", instances
     if networks.read is not None:
         yield "placard", placard.read(picture, placard.board(instances), networks.read)
-    matted = matte.matte(picture, instances)
+    matted = front(picture, instances, drawn)
     if isinstance(matted, Rejection):
         yield "matte", matted
         return
     matted = quantise.matted(matted)
     yield "matte", matted
-    rectified = tuple(map(rounded, rectify.rectify(picture, matted)))
+    rectified = straightened(picture, matted, drawn)
     yield "rectify", rectified
     views = [one for one in rectified if isinstance(one, Elevation)]
     targets = {one.index for one in matted.facades if one.target}
     chosen = [one for one in views if not every and one.facade in targets] or views
     yield "inpaint", tuple(inpaint.inpaint(one, networks.inpaint) for one in chosen)
+
+
+def front(
+    picture: Photo, instances: Sequence[Instance], drawn: Drawn
+) -> Matted | Rejection:
+    """Matte a photo, by the outline that is drawn of its front if one is."""
+    if drawn.outline is None:
+        return matte.matte(picture, instances)
+    return matte.redrawn(picture, instances, drawn.outline)
+
+
+def straightened(
+    picture: Photo, matted: Matted, drawn: Drawn
+) -> tuple[Elevation | Rejection, ...]:
+    """Straighten a photo's fronts, one by the quad that is drawn if one is."""
+    views = rectify.rectify(picture, matted)
+    if drawn.quad is not None:
+        views = rectify.drawn(picture, matted, views, drawn.quad, sd_px=DRAWN_TO_PX)
+    return tuple(map(rounded, views))
 
 
 def rounded(one: Elevation | Rejection) -> Elevation | Rejection:
@@ -111,9 +142,11 @@ def gather(results: Iterator[tuple[str, Any]]) -> Stages:
 FIELD = {"segment": "instances", "matte": "matted", "inpaint": "elevations"}
 
 
-def photograph(data: bytes, networks: Networks, *, name: str) -> Stages:
+def photograph(
+    data: bytes, networks: Networks, *, name: str, drawn: Drawn = UNDRAWN
+) -> Stages:
     """Take one photo through every stage, from its bytes to its elevations."""
-    return gather(steps(data, networks, name=name))
+    return gather(steps(data, networks, name=name, drawn=drawn))
 
 
 def seen(key: str, facade: Facade, view: Elevation) -> Seen:

@@ -5,10 +5,11 @@ its `Move`, and a tileset. Paper: section 3.5, there "a trivial extension". Open
 first, then `anchor`.
 """
 
-from nostalgin_core.city.anchor import Anchor, Settled, anchored, overlaps
+from nostalgin_core.city.anchor import Anchor, Settled, anchored, gap_m, overlaps
 from nostalgin_core.city.city import places
 from nostalgin_core.city.globe import bearing_of, on_globe
-from nostalgin_core.city.plot import Move, Plot, plot
+from nostalgin_core.city.islands import islands
+from nostalgin_core.city.plot import Move, Plot, carried, plot
 from nostalgin_core.city.tileset import Place, Tile, ecef_from_enu
 from nostalgin_core.city.tree import tree
 from nostalgin_core.city.united import united
@@ -22,7 +23,10 @@ __all__ = [
     "Tile",
     "anchored",
     "bearing_of",
+    "carried",
     "ecef_from_enu",
+    "gap_m",
+    "islands",
     "on_globe",
     "overlaps",
     "places",

@@ -130,6 +130,16 @@ def streets(plots: Sequence[Plot], moves: Mapping[str, Move]) -> dict[str, float
     return {street: median(wide) for street, wide in sorted(found.items())}
 
 
+def gap_m(one: Anchor) -> float | None:
+    """Measure the street between the two parts of an outline; None if that is none."""
+    if len(one.outline_deg) != 2:
+        return None
+    plane = plane_of(_degrees([one]))
+    first, second = (shapely.Polygon(plane.metres(part)) for part in one.outline_deg)
+    wide = float(shapely.distance(first, second))
+    return wide if STREET_M[0] <= wide <= STREET_M[1] else None
+
+
 def overlaps(
     plots: Sequence[Plot], moves: Mapping[str, Move]
 ) -> list[tuple[str, str, float]]:

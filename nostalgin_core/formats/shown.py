@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from PIL import Image
 
-from nostalgin_core import evidence
+from nostalgin_core import evidence, rests
 from nostalgin_core.arrays import EvidenceMap
 
 Json = dict[str, Any]
@@ -28,6 +28,7 @@ WORDS: Final = {
     evidence.BEYOND_FRAME: "beyond_frame",
     evidence.COPIED: "copied",
     evidence.ASSUMED: "assumed",
+    rests.ANOTHER: "another_picture",
 }
 FLAT: Final = 0.5  # of a normal's height, from which a surface is no wall
 SQUARE_MM: Final = 1e-6  # m2; less is no surface
@@ -91,7 +92,7 @@ class Shown:
         Texels that show no wall count for nothing; the shares of the others add up to
         one.
         """
-        counts = np.zeros(max(evidence.NAMES) + 1)
+        counts = np.zeros(max(rests.NAMES) + 1)
         for one in shell.surfaces:
             if one.kind == "WallSurface":
                 texels = self._texels(one)
@@ -129,7 +130,7 @@ def png(image: UInt8[np.ndarray, "..."]) -> bytes:
 
 def tinted(codes: EvidenceMap) -> UInt8[np.ndarray, "h w 3"]:
     """Colour an evidence map with the tints that the legend names."""
-    tints = [tint for _, tint in sorted(evidence.TINTS.items())]
+    tints = [tint for _, tint in sorted(rests.TINTS.items())]
     return np.array(tints, np.uint8)[codes]
 
 

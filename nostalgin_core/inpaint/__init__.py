@@ -5,5 +5,6 @@ Paper: sections 3.4 and 4.3. Open `inpaint` first.
 """
 
 from nostalgin_core.inpaint.inpaint import holes, inpaint
+from nostalgin_core.inpaint.rim import kept, rim
 
-__all__ = ["holes", "inpaint"]
+__all__ = ["holes", "inpaint", "kept", "rim"]

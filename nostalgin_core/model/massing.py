@@ -63,25 +63,24 @@ def massing(
     indices = accessor(
         buffer, _fans(faces).ravel(), "SCALAR", target=ELEMENT_ARRAY_BUFFER
     )
-    told = {"evidence": evidence.NAMES[evidence.ASSUMED], **(extras or {})}
-    document: Json = {
+    primitive = {
+        "attributes": attributes,
+        "indices": indices,
+        "material": 0,
+        "mode": 4,
+    }
+    return container(_document(buffer, primitive, extras or {}), bytes(buffer.data))
+
+
+def _document(buffer: Buffer, primitive: Json, extras: dict[str, Any]) -> Json:
+    told = {"evidence": evidence.NAMES[evidence.ASSUMED], **extras}
+    return {
         "asset": {"version": "2.0", "generator": "nostalgin", "extras": told},
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"name": "massing", "mesh": 0}],
-        "meshes": [
-            {
-                "primitives": [
-                    {
-                        "attributes": attributes,
-                        "indices": indices,
-                        "material": 0,
-                        "mode": 4,
-                    }
-                ]
-            }
-        ],
+        "meshes": [{"primitives": [primitive]}],
         "materials": [
             {
                 "name": "plain",
@@ -92,7 +91,6 @@ def massing(
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
     }
-    return container(document, bytes(buffer.data))
 
 
 def _walls(one: Volumes) -> Faces:

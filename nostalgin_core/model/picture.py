@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from PIL import Image
 
-from nostalgin_core import evidence
+from nostalgin_core import evidence, rests
 from nostalgin_core.model.atlas import Atlas
 
 ImageFormat = Literal["webp", "png"]
@@ -47,9 +47,7 @@ def colours(
 def evidence_key(atlas: Atlas) -> Picture:
     """Encode the evidence as a PNG whose palette index is the code."""
     image = Image.fromarray(atlas.evidence, "P")
-    image.putpalette(
-        [part for _, tint in sorted(evidence.TINTS.items()) for part in tint]
-    )
+    image.putpalette([part for _, tint in sorted(rests.TINTS.items()) for part in tint])
     file = io.BytesIO()
     image.save(file, "PNG", transparency=evidence.NOTHING, compress_level=9)
     return Picture(file.getvalue(), "image/png")
@@ -58,6 +56,6 @@ def evidence_key(atlas: Atlas) -> Picture:
 def legend() -> dict[str, dict[str, object]]:
     """Name the codes and their tints, to go with the file."""
     return {
-        str(code): {"name": evidence.NAMES[code], "tint": list(tint)}
-        for code, tint in sorted(evidence.TINTS.items())
+        str(code): {"name": rests.NAMES[code], "tint": list(tint)}
+        for code, tint in sorted(rests.TINTS.items())
     }

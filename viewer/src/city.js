@@ -38,6 +38,8 @@ export class City {
         this.buildings.set(String(building.id), { record: building, block, shape: null, detail: 0 });
       }
     }
+    this.camera = null; // whose view is loaded, see `all`
+    tiles.loadAncestors = tiles.loadSiblings = false; // at first only what one stands before
     tiles.setCamera(this.nearby);
     tiles.setResolution(this.nearby, 512, 512);
     tiles.addEventListener('load-model', ({ scene, tile }) => this.#enter(scene, tile));
@@ -47,6 +49,30 @@ export class City {
       this.errors.push(String(error));
       this.onError(error);
     });
+  }
+
+  /** From now on also loads what `camera` sees, the coarse before the fine. */
+  all(camera, renderer) {
+    const { tiles } = this;
+    tiles.loadAncestors = tiles.loadSiblings = true;
+    this.camera = camera;
+    tiles.setCamera(camera);
+    this.resize(renderer);
+  }
+
+  resize(renderer) {
+    if (this.camera) this.tiles.setResolutionFromRenderer(this.camera, renderer);
+  }
+
+  /** What paves the blocks whose outlines are told, near a place and far from it: names and rows of [x, z]. */
+  ground({ x, z }, reach) {
+    const [near, far] = [[], []];
+    for (const { block, low, high } of this.extents) {
+      if (!block.outline_m?.length) continue;
+      const close = x > low[0] - reach && x < high[0] + reach && z > low[1] - reach && z < high[1] + reach;
+      (close ? near : far).push([block.name, block.outline_m.map((ring) => this.placed(block, ring))]);
+    }
+    return { near, far };
   }
 
   /** Keeps the models near `at` and in `camera`'s view loaded. */

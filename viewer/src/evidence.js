@@ -1,4 +1,4 @@
-// What each texel of the model rests on: the codes of nostalgin_core/evidence.py, with
+// What each texel of the model rests on: the codes of nostalgin_core/rests.py, with
 // the colours in which key E shows them (Okabe and Ito's, apart for colour-blind eyes).
 
 export const NOTHING = 0;
@@ -10,6 +10,7 @@ export const KINDS = [
   { code: 3, name: 'Hidden in the photograph, painted in', color: '#e69f00' },
   { code: 4, name: 'Beyond the photograph’s frame, painted in', color: '#d55e00' },
   { code: 5, name: 'Copied from elsewhere on it', color: '#56b4e9' },
+  { code: 7, name: 'Photographed in another picture', color: '#009e73', strength: 0.6 },
   { code: 6, name: 'Assumed: no photograph', color: '#b48bd0' },
 ];
 

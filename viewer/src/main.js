@@ -5,6 +5,7 @@ import { open } from './city.js';
 import { fillLegend } from './legend.js';
 import { Loading } from './loading.js';
 import { Page } from './page.js';
+import { Stage } from './stage.js';
 
 const loading = new Loading(document.getElementById('notice'));
 
@@ -21,11 +22,13 @@ function complain(error) {
 async function start() {
   // street names are painted once, so their letters have to be there
   const letters = document.fonts.load('600 72px Garamond').catch(() => []);
-  const [city] = await Promise.all([open('', (what) => loading.tell(what)), letters]);
+  const opening = open('', (what) => loading.tell(what));
+  const stage = new Stage(document.getElementById('view')); // a browser takes long over it: the list comes meanwhile
+  const [city] = await Promise.all([opening, letters]);
   document.title = `${city.record.title} · Nostalgin`;
   document.querySelector('#title h1').textContent = city.record.title;
   fillLegend(document.querySelector('#legend ul'));
-  const page = new Page(city);
+  const page = new Page(city, stage);
   await page.begin(loading);
   loading.end();
   return page;

@@ -14,7 +14,6 @@ import { Panel } from './panel.js';
 import { toHash } from './pose.js';
 import { shoot } from './shot.js';
 import { faced, picked, where } from './sight.js';
-import { Stage } from './stage.js';
 import { bestAzimuth, corners, frontFor, homeIn } from './vantage.js';
 import { between, show, shownBy, viewOf } from './view.js';
 import { Walker, rows } from './walker.js';
@@ -26,11 +25,12 @@ const LONGEST_STEP_S = 0.1;
 const LONGEST_PAST_S = 0.6;
 const SETTLING_FRAMES = 3; // after a change, so that a sharp picture stays
 const SAID_S = 6; // a message stays
+const PAVED_M = 300; // about the first picture; what is farther is paved after it
 
 export class Page {
-  constructor(city) {
+  constructor(city, stage) {
     this.city = city;
-    this.stage = new Stage($('view'));
+    this.stage = stage;
     this.input = new Input($('view'), $('stick'));
     this.walker = new Walker();
     this.bird = new Bird();
@@ -52,33 +52,37 @@ export class Page {
     this.said = 0;
     this.still = 0;
     this.quiet = 0; // seconds that a message stays yet
+    this.begun = false; // there is something to see
     this.stage.scene.add(city.group);
     this.stage.camera.rotation.order = 'YXZ';
-    city.tiles.setCamera(this.stage.camera);
     this.walker.raised = this.stage.raised;
     this.walker.bounds = this.stage.box;
   }
 
-  /** Paves what the records tell, then waits for the first model to stand before it. */
+  /** Paves what is near, then waits for the first model to stand before it; the rest of the city comes after. */
   async begin(loading) {
     const { city, stage } = this;
-    stage.paveAll(city.record.blocks
-      .filter((block) => block.outline_m?.length && city.frames.has(block.name))
-      .map((block) => [block.name, block.outline_m.map((ring) => city.placed(block, ring))]));
     listen(this);
     this.resize();
     const { x, z } = city.middle();
     this.walker.pose = { x, z, yaw: 0, pitch: 0 };
     const linked = location.hash.length > 1;
     if (linked) this.guide.follow(location.hash);
+    const { near, far } = city.ground(this.walker.feet, PAVED_M);
+    stage.paveAll(near);
     const settled = this.firstBlock(linked);
     stage.renderer.setAnimationLoop((time) => this.frame(time));
     loading.models(city);
-    const block = await settled;
-    this.home = homeIn(this.city, block, this.walker.pose);
+    this.home = homeIn(city, await settled, this.walker.pose);
     if (!linked) this.stand(this.home);
+    this.begun = true;
+    city.all(stage.camera, stage.renderer);
     document.body.classList.add('running');
     if (!this.panel.open) $('view').focus({ preventScroll: true });
+    this.aim();
+    this.draw();
+    performance.mark('first picture');
+    stage.paveAll(far);
   }
 
   /** Resolves to the first block once it stands; to another where `any` will do, or it can't be had. */
@@ -120,16 +124,16 @@ export class Page {
     const dt = Math.min(past, LONGEST_STEP_S);
     this.lastTime = time;
     if (this.held) return;
-    if (this.input.used) document.body.classList.add('walked');
-    this.step(dt, past);
+    if (this.begun) this.step(dt, past);
     this.city.update(this.walker.feet);
-    if (!this.changed()) return;
+    if (!this.begun || !this.changed()) return; // drawing nothing takes as long as drawing a city
     this.stage.pace(this.still === 0 ? dt : 0);
     this.draw();
   }
 
   /** `dt` is how long one walks, `past` how long one flies: a slow machine flies no slower. */
   step(dt, past = dt) {
+    if (this.input.used) document.body.classList.add('walked');
     const goal = this.flying ? 1 : 0;
     const left = Math.abs(goal - this.height);
     this.height += Math.sign(goal - this.height) * Math.min(left, dt / FLIGHT_S);
@@ -196,8 +200,8 @@ export class Page {
   tell() {
     const hit = this.flying ? null : faced(this.city, this.stage.camera.position, this.walker.yaw);
     const shot = this.guide.then.on ? this.city.buildings.get(this.chosen) : null;
-    const text = shot ? `As ${nameOf(shot.record)} was photographed`
-      : this.flying ? 'From above' : where(hit, this.stage.streetAt(this.walker.feet));
+    const place = this.flying ? 'From above' : where(hit, this.stage.streetAt(this.walker.feet));
+    const text = shot ? `As ${nameOf(shot.record)} was photographed` : place;
     if (this.quiet <= 0 && $('place').textContent !== text) $('place').textContent = text;
     this.credit.show((this.chosen ? this.city.buildings.get(this.chosen) : hit)?.record ?? null);
     const hash = toHash({
@@ -264,7 +268,7 @@ export class Page {
 
   setBird(on, now = calm()) {
     if (on && !this.flying) {
-      this.bird.frame(corners(this.city, this.stage.box), this.stage.camera, bestAzimuth(this.city, this.walker.yaw));
+      this.bird.frame(corners(this.city, this.stage.box, this.walker.feet), this.stage.camera, bestAzimuth(this.city, this.walker.yaw));
     }
     this.flying = on;
     if (now) this.height = on ? 1 : 0;
@@ -280,8 +284,7 @@ export class Page {
 
   /** Saves a picture of the view. */
   shoot() {
-    const draw = () => this.draw();
-    return shoot($('view'), draw, this.city.record.title, $('credit').textContent);
+    return shoot($('view'), () => this.draw(), this.city.record.title, $('credit').textContent);
   }
 
   press(code, on) {
@@ -292,6 +295,6 @@ export class Page {
     this.stage.fit(innerWidth, innerHeight);
     this.fov = this.stage.lens.fov;
     this.guide.then.fit();
-    this.city.tiles.setResolutionFromRenderer(this.stage.camera, this.stage.renderer);
+    this.city.resize(this.stage.renderer);
   }
 }

@@ -53,7 +53,7 @@ function kindOf(mesh, uv, rows) {
     const at = (get) => rows.reduce((total, row, k) => total + get.call(uv, row) * weights[k], 0) / sum;
     return codeAt(at(uv.getX), at(uv.getY));
   });
-  if (codes.some((code) => code >= 1 && code <= 4)) return 'own';
+  if (codes.some((code) => (code >= 1 && code <= 4) || code === 7)) return 'own';
   return codes.includes(5) ? 'copied' : 'plain';
 }
 

@@ -10,6 +10,7 @@ import { along, before, rows } from './walker.js';
 const FARTHEST_M = 70; // to step back from a front
 const NEAREST_M = 2.5;
 const BACK_M = 1; // to what stands behind one
+const ABOUT_M = 600; // of a place, a large city goes on beyond
 const MOST_WALLS = 300; // are looked at to choose a view
 
 const ray = new Raycaster();
@@ -47,11 +48,11 @@ export function bestAzimuth(city, yaw) {
   return sides[worth.indexOf(Math.max(...worth))];
 }
 
-/** Points that the bird's view has to hold. */
-export function corners(city, { min, max }) {
+/** Points that the bird's view has to hold: all about a place, whether its models have come or not. */
+export function corners(city, { min, max }, { x, z }) {
   const points = [];
-  for (const { shape } of city.buildings.values()) {
-    for (const { a, top, bottom } of shape?.walls ?? []) {
+  for (const found of city.near([x, z], ABOUT_M)) {
+    for (const { a, top, bottom } of found.shape?.walls ?? [city.wallOf(found)].filter(Boolean)) {
       points.push(new Vector3(a[0], bottom, a[1]), new Vector3(a[0], top, a[1]));
     }
   }

@@ -8,7 +8,7 @@ import { feet, metres, percent } from '../src/words.js';
 
 // as site.json tells them; any colours that lie apart will do
 const LEGEND = Object.fromEntries(
-  [[0, 0, 0], [255, 255, 255], [255, 240, 180], [255, 140, 60], [230, 90, 120], [90, 170, 250], [170, 140, 230]]
+  [[0, 0, 0], [255, 255, 255], [255, 240, 180], [255, 140, 60], [230, 90, 120], [90, 170, 250], [170, 140, 230], [110, 225, 150]]
     .map((tint, code) => [code, { name: `code ${code}`, tint }]),
 );
 const SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]];
@@ -61,8 +61,8 @@ test('inside is inside and outside is outside, also in a notch', () => {
 test('only what a camera saw stays untinted', () => {
   const strengths = palette().map((row) => row[3]);
   assert.equal(strengths[1], 0);
-  for (const code of [0, 2, 3, 4, 5, 6]) assert.ok(strengths[code] > 0);
-  assert.deepEqual(KINDS.map((kind) => kind.code), [1, 2, 3, 4, 5, 6]);
+  for (const code of [0, 2, 3, 4, 5, 6, 7]) assert.ok(strengths[code] > 0);
+  assert.deepEqual(KINDS.map((kind) => kind.code), [1, 2, 3, 4, 5, 7, 6]);
 });
 
 test('every colour of the evidence image leads back to its code, also when it is off a little', () => {
@@ -84,6 +84,12 @@ test('a legend that leaves a code without a colour is refused', () => {
   for (const legend of [undefined, {}, lacking, { ...LEGEND, 2: { name: 'soft' } }, { ...LEGEND, 2: { tint: [1, 2] } }]) {
     assert.throws(() => keysOf(legend), /legend/);
   }
+});
+
+test('what another picture shows is named, and an older legend without it is read', () => {
+  assert.match(nameOfCode(7), /another picture/);
+  const { 7: _, ...older } = LEGEND;
+  assert.equal(keysOf(older).length, 7);
 });
 
 test('a surface that nothing is known of is called assumed', () => {

@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 
 from nostalgin_core.city import city
-from nostalgin_core.city.anchor import Anchor, Settled, anchored, overlaps, streets
+from nostalgin_core.city.anchor import (
+    Anchor,
+    Settled,
+    anchored,
+    gap_m,
+    overlaps,
+    streets,
+)
 from nostalgin_core.city.globe import Plane
 from nostalgin_core.city.plot import Border, Move, Plot, carried, centre, moved
 from nostalgin_core.city.tileset import Place
@@ -155,3 +162,16 @@ def test_blocks_on_one_another_are_told() -> None:
     ((a, b, area),) = overlaps(plots, true)
     assert (a, b) == ("0", "1")
     assert area == pytest.approx(61 * 240)
+
+
+def test_the_street_inside_a_block_is_what_lies_between_its_outlines_two_parts() -> (
+    None
+):
+    scale = 1 / 111_320.0
+    square = np.array([[0, 0], [60, 0], [60, 50], [0, 50]]) * scale
+    beyond = square + np.array([91.0, 0]) * scale
+    gap = gap_m(Anchor(0.0, 0.0, outline_deg=(square, beyond)))
+    assert gap == pytest.approx(31.0, rel=0.01)
+    assert gap_m(Anchor(0.0, 0.0, outline_deg=(square,))) is None
+    touching = square + np.array([60.0, 0]) * scale
+    assert gap_m(Anchor(0.0, 0.0, outline_deg=(square, touching))) is None

@@ -3,7 +3,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from nostalgin_core import evidence
+from nostalgin_core import evidence, rests
 from nostalgin_core.model import atlas, picture
 from tests.core import sample_block as sample
 
@@ -40,9 +40,9 @@ def test_multiplying_by_the_evidence_leaves_photographed_texels_as_they_are() ->
 
 
 def test_every_code_has_a_tint_of_its_own_and_a_name() -> None:
-    assert set(evidence.TINTS) == set(evidence.NAMES)
-    assert len(set(evidence.TINTS.values())) == len(evidence.TINTS)
-    assert set(picture.legend()) == {str(code) for code in evidence.NAMES}
+    assert set(rests.TINTS) == set(rests.NAMES)
+    assert len(set(rests.TINTS.values())) == len(rests.TINTS)
+    assert set(picture.legend()) == {str(code) for code in rests.NAMES}
 
 
 def test_the_same_atlas_gives_the_same_bytes() -> None:
