@@ -20,8 +20,9 @@ def check(store: Store, *, pictures: bool = True) -> tuple[Finding, ...]:
     Raises:
         Unusable: if its manifest can't be read.
     """
-    found = located(manifest.read(store), store.root, ())
-    made = corrections.applied(found.rows, corrections.read(store))
+    found = located(manifest.read(store, whole=False), store.root, ())
+    given = corrections.read(store)
+    made = corrections.fitting(corrections.applied(found.rows, given), store)
     told = [rejected(one) for one in (*found.rejections, *made.rejections)]
     told += rows.schema(found.warnings)
     for look in (rows.keys, rows.rights, rows.streets, rows.widths):
@@ -34,29 +35,40 @@ def of_files(
     store: Store, every: Sequence[Row], *, pictures: bool
 ) -> Iterator[Finding]:
     """Look at the photographs' files: are they there, and are they different?"""
-    files: dict[str, Path] = {}
-    first: dict[str, str] = {}
+    first: dict[str, Row] = {}
     lots: dict[str, set[str]] = defaultdict(set)
+    lost: set[str] = set()
+    roots: dict[str, str] = {}
     for row in every:
         if not row.photo:
             continue
-        where = rooted(row.root, store.root)
+        if row.root not in roots:
+            roots[row.root] = rooted(row.root, store.root)
+        where = roots[row.root]
         name = f"{where}/{row.photo}"
-        if row.front is not None:
+        if pictures and row.front is not None:
             lots[name].add(f"{row.front.block}-{row.front.lot}")
         if name in first:
             continue
-        first[name] = row.key
-        path = Path(where) / row.photo
-        if "://" not in where and path.is_file():
-            files[name] = path
-        elif "://" not in where or not there(where, row.photo):
+        first[name] = row
+        if not present(where, row.photo):
+            lost.add(name)
             remedy = "restore the file, or mend root and photo"
             yield Finding("missing file", row.key, name, remedy, grave=True)
     if pictures:
+        here = [one for one in first if one not in lost and "://" not in one]
+        files = {name: Path(name) for name in here}
         sure = {name: frozenset(own) for name, own in lots.items()}
-        yield from copies.same_files(files, sure, first)
-        yield from copies.alike(files, sure, first)
+        keys = {name: row.key for name, row in first.items()}
+        yield from copies.same_files(files, sure, keys)
+        yield from copies.alike(files, sure, keys)
+
+
+def present(where: str, photo: str) -> bool:
+    """Tell whether a photograph's file is there."""
+    if "://" in where:
+        return there(where, photo)
+    return Path(f"{where}/{photo}").is_file()
 
 
 def there(root: str, photo: str) -> bool:

@@ -4,19 +4,25 @@ In: files and CSV. Out: `manifest.csv` and `.parquet`; then photos and blocks to
 Open `index` first, then `manifest`.
 """
 
-from pipelines.index.anchors import Anchors, Asked, load, told_of_places
+from pipelines.index.anchors import Anchors, Asked, keep, load, told_of_places
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
+from pipelines.index.profiles import profile
 from pipelines.index.title import cleaned, of_folder
+from pipelines.index.witnesses import Ask, Heard
 
 __all__ = [
     "Anchors",
+    "Ask",
     "Asked",
+    "Heard",
     "Indexed",
     "Nothing",
     "cleaned",
     "index",
+    "keep",
     "load",
     "of_folder",
+    "profile",
     "told_of_places",
 ]

@@ -1,11 +1,13 @@
 """What a city folder knows of its blocks' places on the globe, and how it got there."""
 
+import contextlib
 import hashlib
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, TypeVar
 
+from nostalgin_core import city
 from nostalgin_core.city import Anchor
 from pipelines import bounded
 from pipelines.index import outlines, places
@@ -38,6 +40,7 @@ class Anchors:
 
     of: dict[str, Anchor] = field(default_factory=dict)
     widths_m: dict[str, float] = field(default_factory=dict)
+    gaps_m: dict[str, float] = field(default_factory=dict)  # inside blocks of two parts
     warnings: tuple[str, ...] = ()
     sha256: str = ""  # of the files; empty where there is none
 
@@ -52,18 +55,18 @@ def taken(
     """
     files: dict[str, bytes] = {}
     told: list[str] = []
+    whole: dict[str, Anchor] = {}
+    if asked.places is not None:
+        path = asked.places
+        whole, faults = of_file(path, lambda d: places.read(d, path.name))
+        told += [*few("", faults), *missing(path, whole, blocks)]
     if asked.outlines is not None:
         path = asked.outlines
-        with_key = {"key": asked.outline_key, "crs": asked.outline_crs}
-        found, faults = of_file(path, lambda d: outlines.read(d, blocks, **with_key))
+        known = {"key": asked.outline_key, "crs": asked.outline_crs, "points": whole}
+        found, faults = of_file(path, lambda d: outlines.read(d, blocks, **known))
         files[outlines.OUTLINES] = outlines.written(found, path.name)
         told += [*few(path, faults), *missing(path, found, blocks)]
     if asked.places is not None or asked.place:
-        whole: dict[str, Anchor] = {}
-        if asked.places is not None:
-            path = asked.places
-            whole, faults = of_file(path, lambda d: places.read(d, path.name))
-            told += [*few("", faults), *missing(path, whole, blocks)]
         try:
             more = {places.WHOLE: places.place(asked.place)} if asked.place else {}
         except places.NoPlaces as problem:
@@ -96,6 +99,20 @@ def told_of_places(store: Store) -> bool:
     return any(store.exists(name) for name in FILES)
 
 
+def keep(store: Store, folder: str) -> None:
+    """Copy what the city folder knows into one of its folders, where `load` reads it.
+
+    A file that can't be read is left out, as `load` leaves it out.
+    """
+    found: dict[str, bytes] = {}
+    for name in FILES:
+        if store.exists(name):
+            with contextlib.suppress(OSError):
+                found[name] = store.read_bytes(name, bounded.TABLE_BYTES)
+    for name, data in found.items():
+        store.write_bytes(f"{folder}/{name}", data)
+
+
 def load(store: Store, blocks: Collection[str]) -> Anchors:
     """Read what the city folder knows; a file that can't be used is told, and left out.
 
@@ -125,7 +142,9 @@ def load(store: Store, blocks: Collection[str]) -> Anchors:
     digest = hashlib.sha256(b"".join(hashlib.sha256(d).digest() for d in own.values()))
     sha256 = digest.hexdigest() if own else ""
     anchors = joined(found[outlines.OUTLINES], found[places.PLACES], blocks)
-    return Anchors(anchors, found[places.STREETS], tuple(told), sha256)
+    gaps_m = {block: city.gap_m(one) for block, one in anchors.items()}
+    known_m = {block: gap for block, gap in gaps_m.items() if gap is not None}
+    return Anchors(anchors, found[places.STREETS], known_m, tuple(told), sha256)
 
 
 def joined(
@@ -134,9 +153,9 @@ def joined(
     """Join outlines and points, block by block."""
     plain = {outlines.plain(name): name for name in blocks}
     points = {plain.get(outlines.plain(n), n): one for n, one in pointed.items()}
-    city = points.pop(places.WHOLE, None)
-    if city is not None and blocks:
-        points.setdefault(min(blocks, key=natural), city)
+    whole = points.pop(places.WHOLE, None)
+    if whole is not None and blocks:
+        points.setdefault(min(blocks, key=natural), whole)
     both = {
         block: replace(one, bearing_deg=points[block].bearing_deg)
         for block, one in outlined.items()

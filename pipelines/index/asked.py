@@ -79,19 +79,30 @@ def ask(
     sorting = Sorting(store.root, schemes, shard, warn)
     cells = (one for batch in there.batches() for one in batch)
     checked = manifest.checked(cells) if results is None else results
-    sorted_out = sorting.each(checked)
-    groups = count = 0
-
-    def tables_of() -> Iterator[pa.Table]:
-        nonlocal groups, count
-        for group in grouped(map(cells_of, sorted_out)):
-            groups, count = groups + 1, count + len(group)
-            yield pa.Table.from_pylist(group, COLUMNS)
-
-    store.write_groups(runs.table_path(run, ASKED), COLUMNS, tables_of())
+    groups, count = written(store, run, told_as(sorting.each(checked)))
     photos, blocks = sorting.photos.count(), sorting.blocks.count()
     told = (there.title, sorting.first)
     return Asked(run, photos, blocks, groups, count, *told)
+
+
+def told_as(results: Iterable[Row | Rejection]) -> Iterator[pa.Table]:
+    """Write rows as tables of `GROUP` rows."""
+    for group in grouped(map(cells_of, results)):
+        yield pa.Table.from_pylist(group, COLUMNS)
+
+
+def written(store: Store, run: str, groups: Iterable[pa.Table]) -> tuple[int, int]:
+    """Write what a run is asked for; tell how many groups and rows these are."""
+    count = size = 0
+
+    def counted() -> Iterator[pa.Table]:
+        nonlocal count, size
+        for table in groups:
+            count, size = count + 1, size + table.num_rows
+            yield table
+
+    store.write_groups(runs.table_path(run, ASKED), COLUMNS, counted())
+    return count, size
 
 
 class Distinct:

@@ -101,7 +101,33 @@ def blank(cells: Cells) -> bool:
 
 def written(names: Sequence[str], rows: Iterable[Cells]) -> str:
     """Write a table that `parsed` reads back, whatever line breaks its cells hold."""
-    return line(names) + "".join(line([row.get(n) for n in names]) for row in rows)
+    return "".join(lines(names, rows))
+
+
+def lines(names: Sequence[str], rows: Iterable[Cells]) -> list[str]:
+    """Write the lines of a table.
+
+    The writer quotes the signs that end its lines and no others, so it is left its own
+    two; a lone carriage return in a file's name would else break the table.
+    """
+    sink = Lines()
+    out = csv.writer(sink)
+    out.writerow(map(harmless, names))
+    for row in rows:
+        out.writerow([harmless(row.get(name)) for name in names])
+    return sink.written
+
+
+class Lines:
+    """What a writer of CSV writes a line at a time, each with our own end."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self.written: list[str] = []
+
+    def write(self, line: str) -> None:
+        """Take one line."""
+        self.written.append(line.removesuffix("\r\n") + "\n")
 
 
 def harmless(cell: Any) -> Any:
@@ -113,14 +139,3 @@ def harmless(cell: Any) -> Any:
 def bare(cell: str) -> str:
     """Take off the apostrophe that `harmless` put there."""
     return cell[1:] if cell[:1] == "'" and FORMULA.match(cell) else cell
-
-
-def line(cells: Sequence[Any]) -> str:
-    """Write one row.
-
-    The writer quotes the signs that end its lines and no others, so it is left its own
-    two; a lone carriage return in a file's name would else break the table.
-    """
-    sink = io.StringIO(newline="")
-    csv.writer(sink).writerow(map(harmless, cells))
-    return sink.getvalue().removesuffix("\r\n") + "\n"

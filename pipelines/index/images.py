@@ -11,7 +11,7 @@ from pipelines.store import textual
 SUFFIXES: Final = (
     ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
 )
-WRITTEN: Final = ("site", "artifacts", "runs")  # by build, in the city folder
+WRITTEN: Final = ("site", "artifacts", "runs", "readings")  # in the city folder
 
 
 class Nothing(ValueError):  # noqa: N818 - it reads as what it is about
@@ -100,7 +100,10 @@ def judged(name: str, entry: os.DirEntry[str]) -> Iterator[str | Rejection]:
 
 def is_image(name: str) -> bool:
     """Tell whether a file is called as images are; blanks at the end are no matter."""
-    return Path(name).suffix.strip().casefold() in SUFFIXES
+    _, dot, suffix = name.rpartition(".")
+    return f"{dot}{suffix.strip().casefold()}" in SUFFIXES and not (
+        name.startswith(".") and name.count(".") == 1
+    )
 
 
 def why(problem: OSError) -> str:

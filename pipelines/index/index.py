@@ -1,23 +1,31 @@
 """From a folder of photos and a catalogue to the manifest of a city."""
 
 import os
-import re
 from collections import defaultdict
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Catalogue, Entry
 from nostalgin_core.records import Front, Rejection
-from pipelines.index import lists, manifest
+from pipelines.index import lists, manifest, readings
 from pipelines.index.anchors import Asked, taken
-from pipelines.index.cells import MOST_FRONTS
+from pipelines.index.columns import cells_of
 from pipelines.index.images import Nothing, images, spelt_out
-from pipelines.index.names import block_and_lot, row_name
+from pipelines.index.lots import Lots, from_list, from_names, lots_of
+from pipelines.index.profiles import USUAL, Profile, profile
 from pipelines.index.title import cleaned
 from pipelines.index.told import Told, told
+from pipelines.index.witnesses import (
+    Ask,
+    Hearing,
+    pictured,
+    placed,
+    with_list,
+    without_list,
+)
 from pipelines.store import Store, textual
 
 MOST_HOMELESS: Final = 0.5  # of the photos
@@ -35,6 +43,8 @@ class Indexed:
     rejections: tuple[Rejection, ...]
     warnings: tuple[str, ...]
     widths_assumed: int = 0  # of the fronts
+    witnesses: Mapping[str, int] = field(default_factory=dict)  # photos, by verdict
+    boards: int = 0  # that were looked at
 
     @property
     def astray(self) -> bool:
@@ -52,89 +62,130 @@ def index(
     title: str = "",
     force: bool = False,
     places: Asked | None = None,
+    ask: Ask | None = None,
+    archive: Profile | None = None,
     tell: lists.Tell = lists.silent,
 ) -> Indexed:
     """Write a city folder's manifest; without a `title` its folder's name is shown.
 
-    `photos` is a folder, or a IIIF source, which is brought into the city folder.
-    Without a catalogue the file names tell block and lot; where they don't, the photos
-    of a folder stand in one row, in the order of their names. A manifest that people
-    have mended is replaced by `force` alone, and a copy of it is kept. What an earlier
-    one was told of `places` stays, unless this one is told anew.
+    `photos` is a folder, or a IIIF source, which is brought into the city folder. What
+    names and boards are like an `archive` says, else New York's does. Without a
+    catalogue the names tell block and lot; where they don't, boards, if there is
+    somebody to `ask`; else the photos of a folder stand in one row, as they are named.
+    `readings.parquet` tells what each of these says, and where they contradict each
+    other. A manifest that people have mended is replaced by `force` alone, and a copy
+    of it is kept. What was told of `places` stays, unless this one is told anew.
 
     Raises:
-        Nothing: if there are no photos, no row of the catalogue makes sense, or a
-            mended manifest would be lost.
+        Nothing: if there is no photo, no row that makes sense, or mended ones to lose.
     """
-    if not textual(credit):
-        raise Nothing(f"--credit {spelt_out(credit)} is not UTF-8: write it anew")
-    store = Store(city)
-    mended = replaceable(store, force=force)
-    folder, given = lists.opened(photos, listed, city, tell=tell)
+    own, store = archive or profile(USUAL), Store(city)
+    ask = with_boards(ask, own)
+    mended = replaceable(store, credit, force=force)
+    folder, given = lists.opened(photos, listed, city, naming=own.naming, tell=tell)
     names, unnamed = images(folder, city)
-    read = from_names(names, folder) if given is None else from_list(given)
-    beside = told_by(given, read.entries)
-    entries, crowded = sparse(read.entries)
-    wanted = of_blocks(entries, blocks, crowded, where=Path(listed or photos))
-    fronts, doubts = catalogue.fronts(wanted)
-    named = {front.block for front in fronts}
-    files, placeless = taken(places or Asked(), sorted(named, key=manifest.natural))
-    shown, strangers = catalogue.matched(entries, names)
-    rows, homeless = paired(names, shown, fronts, every=not blocks)
     root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
-    credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
-    year = years(entries)
-    cells = [
-        manifest.row_of(photo, front, root=root, credit=credits_of.get(photo, credit))
-        | beside.of(photo, shown.get(photo, ()), front)
-        | year(front)
-        for photo, front in rows
-    ]
+    heard, read = first_heard(given, names, folder, ask, own)
+    beside = told_by(given, read.entries)
+    lots = lots_of(read, blocks, Path(listed or photos), own)
+    files, placeless = taken(places or Asked(), lots.blocks)
+    shown, strangers = catalogue.matched(lots.entries, names, named=own.naming.told)
+    if given is not None:
+        heard = with_list(names, shown, lots.entries, ask, root, own=own)
+        shown, strangers = placed(heard, shown, strangers, lots.entries)
+    rows, homeless = paired(names, shown, lots.fronts, every=not blocks)
+    cells = cells_of(rows, shown, beside, lots.entries, root=root, credit=credit)
     kept = [] if mended is None else [copied(store, *mended)]
+    written(store, cells, title, files, heard)
+    unlisted = () if blocks else strangers
+    wrong = (*unnamed, *read.rejections, *lots.crowded, *unlisted)
+    doubts = (*lots.said, *beside.warnings, *lots.doubts, *placeless, *heard.doubts())
+    told = {"rejections": wrong, "warnings": (*doubts, *kept)}
+    return indexed(rows, homeless, lots, heard, **told)
+
+
+def first_heard(
+    given: lists.Listing | None,
+    names: Sequence[str],
+    folder: Path,
+    ask: Ask | None,
+    own: Profile,
+) -> tuple[Hearing, Catalogue]:
+    """Read a list; without one hear what tells the lots of photographs in its place.
+
+    Raises:
+        Nothing: if neither makes sense.
+    """
+    if given is not None:
+        return Hearing(), from_list(given, own.naming)
+    root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
+    heard = without_list(names, ask, root, own)
+    return heard, from_names(names, folder, heard.keys())
+
+
+def written(
+    store: Store,
+    cells: list[dict[str, Any]],
+    title: str,
+    files: Mapping[str, bytes],
+    heard: Hearing,
+) -> None:
+    """Write a manifest, what is told of places, and what each witness said."""
     columns = {column for row in cells for column in row} - {*manifest.SCHEMA.names}
     manifest.write(store, cells, title=cleaned(title), kept=columns)
     for name, data in files.items():
         store.write_bytes(name, data)
-    said = about(read.warnings, {entry.row for entry in wanted})
-    unlisted = strangers if not blocks else ()
+    readings.write(store, pictured(store, heard))
+
+
+def indexed(
+    rows: Sequence[tuple[str, Front | None]],
+    homeless: Sequence[str],
+    lots: Lots,
+    heard: Hearing,
+    *,
+    rejections: tuple[Rejection, ...],
+    warnings: tuple[str, ...],
+) -> Indexed:
+    """Count what was indexed."""
     return Indexed(
         photos=len({photo for photo, _ in rows if photo}),
-        fronts=len(fronts),
-        blocks=len(named),
+        fronts=len(lots.fronts),
+        blocks=len(lots.blocks),
         without_front=tuple(homeless),
         without_photo=sum(not photo for photo, _ in rows),
-        widths_assumed=sum(front.width_assumed for front in fronts),
-        rejections=(*unnamed, *read.rejections, *crowded, *unlisted),
-        warnings=(*said, *beside.warnings, *doubts, *placeless, *kept),
+        widths_assumed=sum(front.width_assumed for front in lots.fronts),
+        rejections=rejections,
+        warnings=warnings,
+        witnesses=readings.counted(heard.readings),
+        boards=len(heard.boards),
     )
 
 
-def of_blocks(
-    entries: Sequence[catalogue.Entry],
-    blocks: Sequence[str],
-    crowded: Sequence[Rejection],
-    *,
-    where: Path,
-) -> list[catalogue.Entry]:
-    """Take the entries of the blocks that are asked for, or of all.
+def with_boards(ask: Ask | None, own: Profile) -> Ask | None:
+    """Ask for no boards where an archive has none.
 
     Raises:
-        Nothing: if there are none.
+        Nothing: if those of all photographs were asked for.
     """
-    wanted = [entry for entry in entries if not blocks or entry.block in blocks]
-    if wanted:
-        return wanted
-    if crowded:
-        raise Nothing(f"{crowded[0].key}: {crowded[0].reason}: {crowded[0].detail}")
-    raise Nothing(f"{where} lists none of the blocks {', '.join(blocks)}")
+    if own.boarded or ask is None:
+        return ask
+    if ask.which == "all":
+        raise Nothing(
+            f"profile {own.name} says that there are no boards: leave out --boards "
+            "all, or write present = true below [board]"
+        )
+    return None
 
 
-def replaceable(store: Store, *, force: bool) -> tuple[str, bytes] | None:
+def replaceable(store: Store, credit: str, *, force: bool) -> tuple[str, bytes] | None:
     """Give what people have written in the manifest, if it may be replaced.
 
     Raises:
-        Nothing: if it may not.
+        Nothing: if it may not, or the credit can't be written.
     """
+    if not textual(credit):
+        raise Nothing(f"--credit {spelt_out(credit)} is not UTF-8: write it anew")
     try:
         mended = manifest.mended_by_hand(store)
     except manifest.Unusable as problem:
@@ -153,55 +204,6 @@ def copied(store: Store, name: str, data: bytes) -> str:
     return f"{kept} keeps the manifest that was mended by hand"
 
 
-def sparse(entries: Sequence[Entry]) -> tuple[list[Entry], list[Rejection]]:
-    """Leave out blocks of more fronts than a manifest can count: they are no blocks."""
-    lots: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for entry in entries:
-        lots[entry.block].add((entry.lot, entry.street))
-    detail = (
-        f"more than {MOST_FRONTS:,}, so it is none: is it the right column? without a "
-        "catalogue, files are named by block and lot, or lie in more folders"
-    )
-    crowded = [
-        Rejection(f"block {block}", "catalogue", f"{len(own):,} lots", detail)
-        for block, own in lots.items()
-        if len(own) > MOST_FRONTS
-    ]
-    kept = [one for one in entries if len(lots[one.block]) <= MOST_FRONTS]
-    return kept, crowded
-
-
-def about(warnings: Sequence[str], rows: set[int]) -> list[str]:
-    """Leave out what is said about rows that were not asked for."""
-    named = [(re.search(r" row (\d+):", warning), warning) for warning in warnings]
-    return [text for row, text in named if row is None or int(row[1]) in rows]
-
-
-def years(entries: Sequence[Entry]) -> Callable[[Front | None], dict[str, str]]:
-    """Tell when a front's building was built, where a list tells that of any."""
-    built = {(one.block, one.lot): one.built for one in reversed(entries) if one.built}
-
-    def of(front: Front | None) -> dict[str, str]:
-        lot = (front.block, front.lot) if front else ("", "")
-        return {"year": built.get(lot, "")} if built else {}
-
-    return of
-
-
-def first_credit(entries: Sequence[Entry]) -> str:
-    """Take the credit of the first row that gives one."""
-    return next((entry.credit for entry in entries if entry.credit), "")
-
-
-def from_list(listed: lists.Listing) -> Catalogue:
-    """Read a list.
-
-    Raises:
-        Nothing: if no row of it makes sense.
-    """
-    return useful(listed.read(), Path(listed.name))
-
-
 def told_by(listed: lists.Listing | None, entries: Sequence[Entry]) -> Told:
     """Gather what a list tells of photographs beside their place."""
     if listed is None:
@@ -209,34 +211,6 @@ def told_by(listed: lists.Listing | None, entries: Sequence[Entry]) -> Told:
     reserved, beside = manifest.SCHEMA.names, listed.beside
     named = {"name": listed.name, "first": listed.first, "beside": beside}
     return told(listed.rows, entries, reserved=reserved, **named)
-
-
-def useful(read: Catalogue, path: Path) -> Catalogue:
-    """Insist on one row that makes sense; else name the first that makes none.
-
-    Raises:
-        Nothing: if there is none.
-    """
-    if read.entries:
-        return read
-    told = [f"{one.key}: {one.reason}: {one.detail}" for one in read.rejections[:1]]
-    why = "".join(told) or "it is empty"
-    raise Nothing(f"{path} has no row that makes sense; {why}")
-
-
-def from_names(names: Sequence[str], folder: Path) -> Catalogue:
-    """Make a catalogue of what the file names tell.
-
-    Raises:
-        Nothing: if no name makes sense.
-    """
-    told = {name: block_and_lot(name) for name in names}
-    rows = []
-    for place, name in enumerate(names, 1):
-        row = (row_name(Path(name).parent.name or folder.name), str(place))
-        block, lot = told[name] or row
-        rows.append({"photo": name, "block": block, "lot": lot})
-    return useful(catalogue.read(rows, name="file names"), folder)
 
 
 def paired(

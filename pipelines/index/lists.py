@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from nostalgin_core import catalogue
-from nostalgin_core.catalogue import Catalogue
+from nostalgin_core.catalogue import NAMELESS, Catalogue, Naming
 from nostalgin_core.records import Rejection
 from pipelines import bounded
 from pipelines.index import comma, names
@@ -41,9 +41,11 @@ class Listing:
     warnings: tuple[str, ...] = ()
     beside: Sequence[comma.Cells] = ()  # what tells of photographs and of no place
 
-    def read(self) -> Catalogue:
-        """Read all rows, each by itself."""
-        made = catalogue.read(self.rows, name=self.name, first=self.first)
+    def read(self, naming: Naming) -> Catalogue:
+        """Read all rows; a photo's name may tell the lot that its row does not."""
+        made = catalogue.read(
+            self.rows, name=self.name, first=self.first, named=naming.told
+        )
         told = (*boroughs(self), *self.warnings)
         return replace(
             made,
@@ -57,7 +59,12 @@ def silent(event: str, words: str, **facts: Any) -> None:
 
 
 def opened(
-    source: str | Path, listed: str | Path | None, city: str, *, tell: Tell = silent
+    source: str | Path,
+    listed: str | Path | None,
+    city: str,
+    *,
+    naming: Naming = NAMELESS,
+    tell: Tell = silent,
 ) -> tuple[Path, Listing | None]:
     """Find the folder that holds the photographs, and the list that tells of them.
 
@@ -78,7 +85,7 @@ def opened(
     folder, brought = fetched.brought(name, city, tell=tell)
     if given is not None:
         return folder, joined(given, brought)
-    return folder, placed(brought, brought.name)
+    return folder, placed(brought, brought.name, naming)
 
 
 def presents(path: Path) -> bool:
@@ -142,7 +149,7 @@ def joined(given: Listing, brought: Listing) -> Listing:
     )
 
 
-def placed(listing: Listing, title: str) -> Listing:
+def placed(listing: Listing, title: str, naming: Naming) -> Listing:
     """Give rows without a block and a lot those of their photograph's name.
 
     Where that tells none, the photographs stand in one row, in the order of the list.
@@ -151,7 +158,7 @@ def placed(listing: Listing, title: str) -> Listing:
     for number, row in enumerate(listing.rows, 1):
         known = {catalogue.plain(name) for name, cell in row.items() if name and cell}
         if not known & KEYS:
-            told = names.block_and_lot(row["photo"])
+            told = naming.guessed(row["photo"])
             block, lot = told or (names.row_name(title), str(number))
             rows.append(row | {"block": block, "lot": lot})
         else:

@@ -13,6 +13,7 @@ import json
 import time
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Final
 
 import pyarrow as pa
@@ -31,7 +32,7 @@ from pipelines.index.source import (
     Unusable,
     optional,
 )
-from pipelines.store import Store, parquet_bytes, tables
+from pipelines.store import Store, tables
 
 MENDED: Final = b"nostalgin.mended"  # by hand, at some time since `index` wrote it
 PHOTO: Final = pa.schema(
@@ -48,6 +49,7 @@ REQUIRED: Final = ("photo", "front_id", "block", "lot")
 # nothing is told.
 TOLD: Final = (*told.TOLD, told.AS_WRITTEN, "year")
 DIGITS: Final = 9
+GROUP: Final = 4096  # rows that are written at a time
 FIRST_ROW: Final = 2  # as a spreadsheet counts: the header is row 1
 
 
@@ -80,16 +82,55 @@ def write(
     mended: bool = False,
     kept: Collection[str] = (),
 ) -> None:
-    """Write the manifest in both forms, in the order of block, ring, rank and photo.
+    """Write the manifest in both forms."""
+    put(store, encoded(rows, title=title, mended=mended, kept=kept))
+
+
+def put(store: Store, both: tuple[bytes, bytes]) -> None:
+    """Write a manifest's two forms, as they are encoded."""
+    for name, data in zip((CSV, PARQUET), both, strict=True):
+        store.write_bytes(name, data)
+
+
+def encoded(
+    rows: list[dict[str, Any]],
+    *,
+    title: str = "",
+    mended: bool = False,
+    kept: Collection[str] = (),
+) -> tuple[bytes, bytes]:
+    """Encode the manifest as CSV and Parquet, by block, ring, rank and photo.
 
     `kept` are columns of a list, which are remembered to be none of a slip's.
     """
+    columns = {name for row in rows for name in row}
+    told = {"title": title, "mended": mended, "kept": kept}
+    return ordered(sorted(rows, key=place), columns, **told)
+
+
+def ordered(
+    rows: Iterable[dict[str, Any]],
+    columns: Collection[str],
+    *,
+    title: str = "",
+    mended: bool = False,
+    kept: Collection[str] = (),
+) -> tuple[bytes, bytes]:
+    """Encode rows that come in their order, as CSV and Parquet, and hold none of them.
+
+    `columns` are those of all rows; a million rows take a gigabyte as Python has them.
+    """
     known = SCHEMA.names
-    others, ordered = {name for row in rows for name in row}, sorted(rows, key=place)
-    others = sorted(others.difference(known))
-    text = comma.written([*known, *others], ordered).encode()
+    others = sorted(set(columns).difference(known))
+    names = [*known, *others]
     extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
-    table = pa.Table.from_pylist(ordered, extended)
+    parts, batches = [comma.written(names, ())], []
+    waiting = iter(rows)
+    while group := list(islice(waiting, GROUP)):
+        parts.append("".join(comma.lines(names, group)[1:]))
+        batches.append(pa.RecordBatch.from_pylist(group, extended))
+    text = "".join(parts).encode()
+    table = pa.Table.from_batches(batches, extended).combine_chunks()
     mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
     if title:
         mark[TITLE] = title.encode()
@@ -97,8 +138,7 @@ def write(
         mark[MENDED] = b"yes"
     if kept:
         mark[KEPT] = json.dumps(sorted(kept)).encode()
-    store.write_bytes(CSV, text)
-    store.write_bytes(PARQUET, parquet_bytes(table.replace_schema_metadata(mark)))
+    return text, tables.parquet_bytes(table.replace_schema_metadata(mark))
 
 
 def rewrite(store: Store, found: Manifest) -> Manifest:
@@ -110,9 +150,14 @@ def rewrite(store: Store, found: Manifest) -> Manifest:
     """
     if not found.mended or found.rejections:
         return found
-    rows = [typed(row) for row in found.rows]
-    write(store, rows, title=found.title, mended=True, kept=found.kept)
+    put(store, again(found))
     return read(store)
+
+
+def again(found: Manifest) -> tuple[bytes, bytes]:
+    """Encode a manifest that was mended by hand anew."""
+    rows = [typed(row) for row in found.rows]
+    return encoded(rows, title=found.title, mended=True, kept=found.kept)
 
 
 def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
@@ -169,10 +214,11 @@ def natural(text: str | None) -> tuple[int, str]:
     return 10**DIGITS, text or ""
 
 
-def read(store: Store) -> Manifest:
+def read(store: Store, *, whole: bool = True) -> Manifest:
     """Read the manifest: the CSV if it was mended by hand, else the Parquet file.
 
-    It is held as a whole: a run reads it in parts (`asked`).
+    It is held as a whole: a run reads it in parts (`asked`). Of rows that are not
+    `whole` no more cells are held than tell of their photographs.
 
     Raises:
         Unusable: if there is none, or if what there is makes no sense.
@@ -180,7 +226,7 @@ def read(store: Store) -> Manifest:
     there = source.found(store)
     warnings = noticed(there)
     cells = (one for batch in there.batches() for one in batch)
-    results = list(checked(cells))
+    results = list(checked(cells) if whole else slim(checked(cells)))
     rows = tuple(one for one in results if isinstance(one, Row))
     return Manifest(
         rows,
@@ -191,6 +237,18 @@ def read(store: Store) -> Manifest:
         title=there.title,
         kept=there.kept,
     )
+
+
+def slim(results: Iterable[Row | Rejection]) -> Iterator[Row | Rejection]:
+    """Let go of cells that a row holds already, and hold words of many rows once."""
+    words: dict[str, str] = {}
+    for one in results:
+        if isinstance(one, Rejection):
+            yield one
+            continue
+        cells = {name: one.cells[name] for name in told.TELLING if one.cells.get(name)}
+        root, credit = (words.setdefault(each, each) for each in (one.root, one.credit))
+        yield Row(one.number, root, one.photo, one.front, credit, cells)
 
 
 def noticed(there: Source) -> list[str]:

@@ -26,10 +26,16 @@ SHARED: Final = 0.5  # of the smaller outline: two blocks have one
 
 
 def read(
-    data: bytes, blocks: Collection[str], *, key: str = "", crs: str = ""
+    data: bytes,
+    blocks: Collection[str],
+    *,
+    key: str = "",
+    crs: str = "",
+    points: Mapping[str, Anchor] | None = None,
 ) -> tuple[dict[str, Anchor], list[str]]:
     """Read the outlines of blocks, and tell what is wrong with some of them.
 
+    Outlines that do not say whose they are go to the blocks on whose `points` they lie.
     Of several buildings of a block its outline is made (`city.united`). Two blocks that
     share an outline get none.
 
@@ -38,9 +44,34 @@ def read(
     """
     found = features(data, crs)
     usable = [one for one in found if one.shape is not None]
-    name = key_of(usable, key)
     told = [f"feature {one.number} {one.fault}" for one in found if one.fault]
     wanted = {plain(block): block for block in blocks}
+    here = {wanted[n]: p for n, p in pointed(points or {}).items() if n in wanted}
+    if here and not key and not known_key(usable):
+        own, mend = by_place(usable, here), "place"
+    else:
+        mend = key_of(usable, key)
+        own = by_key(usable, mend, wanted)
+    anchors = {block: made(those) for block, those in sorted(own.items())}
+    anchors = {block: one for block, one in anchors.items() if one is not None}
+    twins = shared(anchors)
+    for a, b in twins:
+        told.append(
+            f"blocks {a} and {b} have one outline (features {numbers(own[a])} and "
+            f"{numbers(own[b])}): both stand by their streets; mend one's {mend!r}"
+        )
+    gone = {block for pair in twins for block in pair}
+    return {block: one for block, one in anchors.items() if block not in gone}, told
+
+
+def by_key(
+    usable: Sequence[Feature], name: str, wanted: Mapping[str, str]
+) -> dict[str, list[Feature]]:
+    """Sort outlines by the property that names their blocks.
+
+    Raises:
+        NoOutlines: if there is none of these blocks.
+    """
     own: dict[str, list[Feature]] = defaultdict(list)
     for one in usable:
         block = wanted.get(block_of(name, one.properties.get(name)))
@@ -50,18 +81,46 @@ def read(
         keys = [str(one.properties.get(name))[:40] for one in usable]
         raise NoOutlines(
             f"has no outline of these blocks: its {name!r} is {few(keys)}, the blocks "
-            f"are {few(blocks)}: is it another city's? or name another --outline-key"
+            f"are {few(list(wanted.values()))}: is it another city's? or name another "
+            "--outline-key"
         )
-    anchors = {block: made(those) for block, those in sorted(own.items())}
-    anchors = {block: one for block, one in anchors.items() if one is not None}
-    twins = shared(anchors)
-    for a, b in twins:
-        told.append(
-            f"blocks {a} and {b} have one outline (features {numbers(own[a])} and "
-            f"{numbers(own[b])}): both stand by their streets; mend one's {name!r}"
+    return own
+
+
+def by_place(
+    usable: Sequence[Feature], points: Mapping[str, Anchor]
+) -> dict[str, list[Feature]]:
+    """Give each block the island of outlines on which its point lies.
+
+    Raises:
+        NoOutlines: if none lies on any.
+    """
+    at = np.array([[p.longitude_deg, p.latitude_deg] for p in points.values()])
+    shapes = [one.shape for one in usable if one.shape is not None]
+    sheets = [sheet_of(one.properties) for one in usable]
+    found = city.islands(shapes, sheets, at)
+    own = {
+        block: [usable[i] for i in those]
+        for block, those in zip(points, found, strict=True)
+        if those
+    }
+    if not own:
+        raise NoOutlines(
+            "does not say whose outlines, and none lies where the places of blocks "
+            f"{few(list(points))} are: is it another city's? or name an --outline-key"
         )
-    gone = {block for pair in twins for block in pair}
-    return {block: one for block, one in anchors.items() if block not in gone}, told
+    return own
+
+
+def pointed(points: Mapping[str, Anchor]) -> dict[str, Anchor]:
+    """Name places as outlines name blocks."""
+    return {plain(name): one for name, one in points.items()}
+
+
+def known_key(found: Sequence[Feature]) -> str:
+    """Find a property that usually names blocks; empty if there is none."""
+    names = sorted({name for one in found for name in one.properties})
+    return next((n for key in KEYS for n in names if n.casefold() == key), "")
 
 
 def key_of(found: Sequence[Feature], asked: str) -> str:
@@ -73,14 +132,13 @@ def key_of(found: Sequence[Feature], asked: str) -> str:
     names = Counter(name for one in found for name in one.properties)
     if asked in names:
         return asked
-    known = [n for key in KEYS for n in sorted(names) if n.casefold() == key]
-    if known and not asked:
-        return known[0]
+    if known_key(found) and not asked:
+        return known_key(found)
     words = f"has no property {asked!r}" if asked else "does not say whose outlines"
     raise NoOutlines(
         f"{words}: its features have {few(sorted(names)) or 'none'}; name one by "
         "--outline-key, join a block's number to each outline in a map program, or "
-        "give each block a point by --places"
+        "give each block a point by --places too: then it gets the outlines there"
     )
 
 

@@ -7,6 +7,7 @@ CITY/streets.csv     street, width_m
 from collections.abc import Mapping
 from typing import Final
 
+from nostalgin_core.address import plain_name
 from nostalgin_core.city import Anchor
 from pipelines.index import comma
 from pipelines.index.cells import quoted, text
@@ -82,7 +83,7 @@ def streets(data: bytes, name: str) -> tuple[dict[str, float], list[str]]:
             told.append(f"{name} row {number} {problem}: mend the cell")
             continue
         if LEAST_M <= wide <= MOST_M:
-            widths[" ".join(text(row, "street").casefold().split())] = wide
+            widths[plain_name(text(row, "street"))] = wide
         else:
             words = f"width_m is {wide:g}, not {LEAST_M:g} to {MOST_M:g}"
             told.append(f"{name} row {number}: {words}: mend the cell")

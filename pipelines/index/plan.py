@@ -6,7 +6,7 @@
 import hashlib
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from nostalgin_core.records import Front, Rejection
 from pipelines.index.roots import rooted
@@ -23,11 +23,21 @@ class PhotoRef:
     name: str
     blocks: tuple[str, ...]  # that it may show fronts of
     sha256: str = ""
+    # As its file was before it was read; of an element's name they are no part.
+    size: int = field(default=0, repr=False, compare=False)
+    mtime_ns: int = field(default=0, repr=False, compare=False)
+    outline: str = ""  # of its front, if somebody drew it: x,y x,y ... in its pixels
+    quad: str = ""  # of its front, the same
 
     @property
     def key(self) -> str:
         """Name the photo in rejections."""
         return self.name
+
+    @property
+    def drawn(self) -> tuple[str, str]:
+        """Give what its artifacts are made from beside its content."""
+        return self.outline, self.quad
 
 
 @dataclass(frozen=True)
@@ -44,6 +54,7 @@ class BlockTask:
     told: tuple[tuple[Name, tuple[tuple[str, str], ...]], ...] = ()
     heights_m: tuple[tuple[str, float], ...] = ()  # that are known, by building
     targets_px: tuple[tuple[Name, float], ...] = ()  # x of the facade that is meant
+    widths_m: tuple[tuple[str, float], ...] = ()  # of streets that cut it, as told
 
     @property
     def key(self) -> str:

@@ -66,8 +66,11 @@ def refused(row: Row) -> Rejection:
 
 def spelt(row: Row, city: str) -> Row:
     """Take a row's blanks for part of its names where such a file is there."""
-    trimmed = replace(row, root=row.root.strip(), photo=row.photo.strip())
-    if not row.photo or trimmed == row:
+    root, photo = row.root.strip(), row.photo.strip()
+    if (root, photo) == (row.root, row.photo):
+        return row
+    trimmed = replace(row, root=root, photo=photo)
+    if not row.photo:
         return trimmed
     for one in (
         row,

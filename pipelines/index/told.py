@@ -8,7 +8,6 @@ are kept under their own names.
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import PurePosixPath
 from typing import Any, Final
 
 from nostalgin_core import catalogue
@@ -23,6 +22,7 @@ TOLD: Final[Mapping[str, tuple[str, ...]]] = {
     "source_url": ("source_url", "source", "record_url", "url", "homepage"),
 }
 AS_WRITTEN: Final = "date_as_written"  # where it is no EDTF
+TELLING: Final = (*TOLD, AS_WRITTEN)  # columns that tell of photographs
 LONGEST_NAME: Final = 100  # letters of a column that is kept
 MOST_COLUMNS: Final = 200  # that are kept
 MOST_TOLD: Final = 5  # dates that are no EDTF
@@ -122,7 +122,7 @@ class Reader:
 
 def stem(photo: str) -> str:
     """Write a photograph's name as names are compared: without folder and suffix."""
-    return PurePosixPath(photo.strip().replace("\\", "/")).stem.casefold()
+    return catalogue.stem(photo.strip().replace("\\", "/")).casefold()
 
 
 def text(cell: Any) -> str:

@@ -8,6 +8,7 @@ each is an error in words, within the time and the size that are allowed.
 import ipaddress
 import socket
 import threading
+from concurrent.futures import Future, wait
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -55,32 +56,30 @@ def fetch(url: str, most: int, *, asked: str = "", patience: Patience) -> bytes:
     Raises:
         Unfetched: if the server gives no such thing.
     """
-    found: list[bytes] = []
-    problems: list[Exception] = []
+    import requests
+
     gone = threading.Event()
+    answer: Future[bytes] = Future()
 
     def work() -> None:
         try:
-            found.append(followed(url, most, asked or url, patience, gone))
-        except Exception as problem:  # noqa: BLE001 - it is raised where it is waited for
-            problems.append(problem)
+            answer.set_result(followed(url, most, asked or url, patience, gone))
+        except (requests.RequestException, OSError, ValueError) as problem:
+            answer.set_exception(problem)
+        finally:
+            answer.cancel()  # a mistake of ours tells itself, and nobody waits for it
 
     # A server that trickles keeps every timeout of a socket; whoever waits need not.
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    thread.join(patience.whole_s)
-    gone.set()
-    if found:
-        return found[0]
-    if not problems:
+    threading.Thread(target=work, daemon=True).start()
+    if not wait([answer], patience.whole_s).done:
+        gone.set()
         raise Unfetched(f"{url}: no answer within {patience.whole_s:g} seconds")
-    if isinstance(problems[0], Unfetched):
-        raise problems[0]
-    import requests
-
-    if isinstance(problems[0], (requests.RequestException, OSError, ValueError)):
-        raise Unfetched(f"{url}: {plain(problems[0])}") from problems[0]
-    raise problems[0]
+    try:
+        return answer.result()
+    except Unfetched:
+        raise
+    except (requests.RequestException, OSError, ValueError) as problem:
+        raise Unfetched(f"{url}: {plain(problem)}") from problem
 
 
 def followed(

@@ -7,7 +7,8 @@ import pytest
 
 from pipelines.index import manifest
 from pipelines.index.images import Nothing
-from pipelines.index.index import Indexed, block_and_lot, index
+from pipelines.index.index import Indexed, index
+from pipelines.index.profiles import USUAL, profile
 from pipelines.index.roots import located
 from pipelines.store.store import Store
 from tests.data import DATA, needs_data
@@ -118,7 +119,7 @@ def test_a_stranger_is_kept_without_a_front_and_named(photos: Path) -> None:
     ],
 )
 def test_file_names_tell_block_and_lot(name: str, lot: tuple[str, str] | None) -> None:
-    assert block_and_lot(name) == lot
+    assert profile(USUAL).naming.guessed(name) == lot
 
 
 def test_an_empty_folder_is_refused_by_name(tmp_path: Path) -> None:

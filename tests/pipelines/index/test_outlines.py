@@ -6,6 +6,7 @@ import pytest
 import shapely
 from pyproj import Transformer
 
+from nostalgin_core.city import Anchor
 from pipelines.index import outlines
 from pipelines.index.geojson import NoOutlines, features
 
@@ -169,3 +170,44 @@ def test_one_bad_feature_spoils_no_other() -> None:
 
 def test_features_keep_their_numbers() -> None:
     assert [one.number for one in features(TWO)] == [1, 2]
+
+
+def inside(east: float, north: float = 0.0) -> Anchor:
+    """Give a point in the middle of a square."""
+    x, y = (0.0015 * one + 0.0005 for one in (east, north))
+    return Anchor(CORNER[0] + x, CORNER[1] + y)
+
+
+def halves(east: int) -> list[dict[str, Any]]:
+    """Cut a square into two buildings that touch."""
+    (x0, y0), (x1, y1) = square(east)[0], square(east)[2]
+    middle = (x0 + x1) / 2
+    return [
+        feature([[a, y0], [b, y0], [b, y1], [a, y1], [a, y0]], name="a house")
+        for a, b in ((x0, middle), (middle, x1))
+    ]
+
+
+def test_outlines_that_name_no_block_go_to_whose_point_lies_among_them() -> None:
+    data = collection(*halves(0), *halves(1), *halves(2))
+    points = {"00993": inside(0), "996": inside(2.05)}
+    anchors, told = outlines.read(data, BLOCKS, points=points)
+    assert told == []
+    for block, east in (("993", 0), ("996", 2)):
+        (part,) = anchors[block].outline_deg
+        wanted = shapely.Polygon(square(east))
+        assert shapely.Polygon(part).symmetric_difference(wanted).area < 0.01 * (
+            wanted.area
+        )
+
+
+def test_a_key_goes_before_points() -> None:
+    points = {"993": inside(1), "996": inside(0)}
+    assert outlines.read(TWO, BLOCKS, points=points)[0].keys() == {"993", "996"}
+    west = outlines.read(TWO, BLOCKS, points=points)[0]["993"].longitude_deg
+    assert west == pytest.approx(CORNER[0] + 0.0005)
+
+
+def test_points_of_another_city_get_no_outline_and_are_told() -> None:
+    with pytest.raises(NoOutlines, match="another city"):
+        outlines.read(collection(*halves(0)), BLOCKS, points={"993": inside(900)})
