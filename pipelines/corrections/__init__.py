@@ -4,7 +4,20 @@ In: `corrections.csv` or `.jsonl` of a city folder, and the manifest's rows. Out
 and blocks as corrected, and what each correction changed. Open `corrections` first.
 """
 
-from pipelines.corrections.applied import applied
+from pipelines.corrections.applied import Applied, applied
 from pipelines.corrections.corrections import read
+from pipelines.corrections.fitting import fitting
+from pipelines.corrections.found import Found, found, hashed, published
+from pipelines.corrections.measured import measured
 
-__all__ = ["applied", "read"]
+__all__ = [
+    "Applied",
+    "Found",
+    "applied",
+    "fitting",
+    "found",
+    "hashed",
+    "measured",
+    "published",
+    "read",
+]

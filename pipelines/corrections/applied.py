@@ -2,8 +2,8 @@
 
 What a correction touches is what it is merged into: a photograph's key moves it to
 other fronts, a width or an order changes a front and so its block, a height or a target
-its block alone. Stages' keys are made of what they work on, so that nothing else is
-done again; a photograph's own stages never are.
+its block alone, a mask or a quad its photograph from that stage on. Stages' keys are
+made of what they work on, so that nothing else is done again.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,6 +19,8 @@ AGAIN: Final = {
     "key": "the blocks that the photo leaves and enters",
     "placard": "the blocks that the photo leaves and enters",
     "target": "its blocks",
+    "mask": "the photo from matte on, its blocks",
+    "quad": "the photo from rectify on, its blocks",
     "width_m": "its block",
     "order": "its block",
     "height_m": "its block",
@@ -51,6 +53,8 @@ class Applied:
     rejections: tuple[Rejection, ...] = ()
     heights_m: Mapping[str, float] = field(default_factory=dict)  # by building
     targets_px: Mapping[str, float] = field(default_factory=dict)  # x, by photo
+    outlines: Mapping[str, str] = field(default_factory=dict)  # of fronts, by photo
+    quads: Mapping[str, str] = field(default_factory=dict)  # the same
 
 
 def applied(rows: Sequence[Row], corrections: Corrections) -> Applied:
@@ -66,6 +70,8 @@ def applied(rows: Sequence[Row], corrections: Corrections) -> Applied:
         "order": ordered,
         "height_m": heightened,
         "target": targeted,
+        "mask": outlined,
+        "quad": cornered,
     }
     for what, way in ways.items():
         for one in corrections.given:
@@ -163,6 +169,22 @@ def targeted(made: Applied, one: Correction) -> Applied:
         return refused(made, one, "no such photo", "write it as the manifest does")
     made = replace(made, targets_px={**made.targets_px, one.photo: one.number})
     return changed(made, one, "as segmented", f"x = {one.number:g} px")
+
+
+def outlined(made: Applied, one: Correction) -> Applied:
+    """Let a photograph's front be what is drawn round it."""
+    if not any(row.photo == one.photo for row in made.rows):
+        return refused(made, one, "no such photo", "write it as the manifest does")
+    made = replace(made, outlines={**made.outlines, one.photo: one.shape})
+    return changed(made, one, "as segmented", one.shape)
+
+
+def cornered(made: Applied, one: Correction) -> Applied:
+    """Let a photograph's front have the corners that are drawn."""
+    if not any(row.photo == one.photo for row in made.rows):
+        return refused(made, one, "no such photo", "write it as the manifest does")
+    made = replace(made, quads={**made.quads, one.photo: one.shape})
+    return changed(made, one, "as rectified", one.shape)
 
 
 def fronts_of(made: Applied, front_id: str) -> list[Front]:

@@ -6,16 +6,27 @@ photo,front_id,building_id,what,value,note
 ,993-11-0,,order,12.5,stands between the fronts of rank 12 and 13
 ,,993-11,height_m,18,five storeys
 993_8.jpg,,,target,412,the facade at x = 412 pixels
+993_8.jpg,,,mask,"80,20 400,32 402,610 78,600",the outline of the whole front
+993_8.jpg,,,quad,"80,20 400,32 402,610 78,600",its four corners
 """
 
 import hashlib
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+import numpy as np
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from nostalgin_core.records import Rejection
+from pipelines.corrections import shapes
 from pipelines.index import comma
 from pipelines.index.cells import LEAST_M, MOST_FRONTS, MOST_M
 from pipelines.store import Store
@@ -32,6 +43,8 @@ SUBJECTS: Final = {
     "key": "photo",
     "placard": "photo",
     "target": "photo",
+    "mask": "photo",
+    "quad": "photo",
     "width_m": "front_id",
     "order": "front_id",
     "height_m": "building_id",
@@ -43,7 +56,14 @@ LIMITS: Final = {
     "target": (0.0, FARTHEST_PX),
 }
 
-What = Literal["key", "placard", "target", "width_m", "order", "height_m"]
+What = Literal[
+    "key", "placard", "target", "mask", "quad", "width_m", "order", "height_m"
+]
+SHAPES: Final[dict[str, Callable[[str], np.ndarray]]] = {
+    "mask": shapes.outline,
+    "quad": shapes.quad,
+}
+LONGEST_SHAPE: Final = 32_767  # letters: what a cell of a spreadsheet holds
 
 
 class Correction(BaseModel):
@@ -54,7 +74,6 @@ class Correction(BaseModel):
         frozen=True,
         coerce_numbers_to_str=True,
         str_strip_whitespace=True,
-        str_max_length=LONGEST,
     )
 
     what: What
@@ -65,18 +84,50 @@ class Correction(BaseModel):
     note: str = ""
     row: str = ""  # which it is, in messages
 
+    @field_validator("value", mode="before")
+    @classmethod
+    def flat(cls, value: object) -> object:
+        """Write a list of points as a table has it."""
+        if not isinstance(value, list):
+            return value
+        if len(value) > shapes.MOST:
+            raise ValueError(f"has {len(value):,} points, more than {shapes.MOST:,}")
+        if not all(isinstance(one, list) and len(one) == 2 for one in value):
+            raise ValueError("is a list, but not of points: write [[x, y], [x, y] ...]")
+        return " ".join(f"{x},{y}" for x, y in value)
+
     @model_validator(mode="after")
     def sensible(self) -> Self:
         """Insist on what it speaks of, and on a value that this may have."""
+        self._short()
         if not self.subject:
             raise ValueError(f"{SUBJECTS[self.what]} is empty: {self.what} is of one")
-        if self.what in LIMITS:
+        if self.what in SHAPES:
+            try:
+                SHAPES[self.what](self.value)
+            except ValueError as problem:
+                raise ValueError(f"{self.what} {problem}") from problem
+        elif self.what in LIMITS:
             low, high = LIMITS[self.what]
             if not low <= self.number <= high:
                 raise ValueError(f"{self.what} is not {low:g} to {high:g}")
         elif len(self.lot_key) != 2:
             raise ValueError(f"{self.what} is {self.value[:40]!r}: write block-lot")
         return self
+
+    def _short(self) -> None:
+        """Refuse cells that no name or number fills."""
+        for name in type(self).model_fields:
+            most = LONGEST
+            if name == "value" and self.what in SHAPES:
+                most = LONGEST_SHAPE
+            if len(getattr(self, name)) > most:
+                raise ValueError(f"{name} has more than {most:,} letters: shorten it")
+
+    @property
+    def shape(self) -> str:
+        """Give a value that is a shape as keys have it."""
+        return shapes.written(SHAPES[self.what](self.value))
 
     @property
     def subject(self) -> str:
