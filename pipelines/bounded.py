@@ -14,6 +14,7 @@ PHOTO_BYTES: Final = 1_000_000_000  # 150 megapixels of 16-bit RGB, as they are
 TABLE_BYTES: Final = 250_000_000  # a list: a million rows of the New York archive's
 NETWORK_BYTES: Final = 2_000_000_000  # ONNX's own limit
 LOCK_BYTES: Final = 1_000_000
+PROFILE_BYTES: Final = 64_000  # of an archive: some patterns
 SLACK: Final = 1 << 20
 
 

@@ -13,6 +13,8 @@ from pipelines import bounded
 
 LOCK: Final = "models.lock"
 NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
+READER: Final = "placard"  # the stage that asks the reader of print
+PRINT: Final = "rapidocr-onnxruntime"  # which it comes with
 SHAPES: Final = {"segment": (1, 5), "inpaint": (3, 1)}  # inputs, outputs
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
 
@@ -105,7 +107,7 @@ class Models:
 
 
 class Once:
-    """A network that is loaded when it is first called, and once in a process.
+    """A network, or the reader, loaded when it is first called, once in a process.
 
     It can be sent to a worker; the network itself stays behind.
     """
@@ -129,7 +131,7 @@ class Once:
 
     def _load(self) -> Callable[..., Any]:
         one_thread()
-        return self._models.load(self._name)
+        return reader() if self._name == READER else self._models.load(self._name)
 
 
 def reader() -> Callable[..., Any]:

@@ -4,10 +4,62 @@ In: a city folder with a manifest. Out: artifacts, a run's tables, a `Report`.
 A stage of the core is a transform here; whom to tell, it is given. Open `city` first.
 """
 
-from pipelines.build.build import build
+import pipelines.build.lean  # noqa: F401 - before all that loads Beam
+from pipelines.build.boards import boards
+from pipelines.build.build import (
+    Tell,
+    Watch,
+    build,
+    carried_out,
+    made_alone,
+    readied,
+    silent,
+    unwatched,
+)
 from pipelines.build.cluster import Unrun
+from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.external import serve
-from pipelines.build.options import options
+from pipelines.build.options import CityOptions, options
+from pipelines.build.prepared import (
+    DIRECTED,
+    Prepared,
+    anchored,
+    bench_of,
+    direct,
+    schemes_of,
+    told_of_run,
+    written_anew,
+    written_words,
+)
 from pipelines.build.report import Lost, Report
+from pipelines.build.streets import Streets
 
-__all__ = ["Lost", "Report", "Unrun", "build", "options", "serve"]
+__all__ = [
+    "DIRECTED",
+    "CityOptions",
+    "Corrected",
+    "Lost",
+    "Prepared",
+    "Report",
+    "Streets",
+    "Tell",
+    "Unrun",
+    "Watch",
+    "anchored",
+    "bench_of",
+    "boards",
+    "build",
+    "carried_out",
+    "corrected",
+    "direct",
+    "made_alone",
+    "options",
+    "readied",
+    "schemes_of",
+    "serve",
+    "silent",
+    "told_of_run",
+    "unwatched",
+    "written_anew",
+    "written_words",
+]

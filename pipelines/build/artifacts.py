@@ -1,10 +1,13 @@
-"""What the artifacts of `matte` and `rectify` hold: a row a facade or an occluder."""
+"""What the artifacts of `matte`, `rectify` and `borrow` hold, and how it is read."""
 
+import json
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import pyarrow as pa
 
-from nostalgin_core import rectify, steps
+from nostalgin_core import evidence, inpaint, rectify, steps
+from nostalgin_core.borrow import Borrowed, Fit
 from nostalgin_core.records import (
     Elevation,
     Facade,
@@ -27,6 +30,18 @@ def joined(*records: type) -> pa.Schema:
 MATTED: Final = joined(Facade, Occluder)
 RECTIFIED: Final = joined(Elevation, Seen, Standpoint, Rejection)
 THUMBNAIL: Final = pa.schema([pa.field("picture", pa.binary())])
+LENT: Final = ["photos", "fits", "unseen", "left", "front"]
+BORROWED: Final = pa.schema(
+    [
+        *tables.schema(Elevation),
+        pa.field("sources", pa.binary()),  # a PNG: 0, or a place in `photos`, from 1
+        pa.field("photos", pa.list_(pa.string())),
+        pa.field("fits", pa.string()),  # of all lenders, as JSON
+        pa.field("unseen", pa.int64()),  # texels that the own photograph does not show
+        pa.field("left", pa.int64()),  # of these, that no other one showed
+        pa.field("front", pa.int64()),  # texels of the front
+    ]
+)
 NUMBERS: Final = [field.name for field in joined(Seen, Standpoint, Rejection)]
 
 
@@ -81,3 +96,49 @@ def elevation_from(table: pa.Table, facade: int) -> Elevation:
         if row["facade"] == facade and row["reason"] is None:
             return tables.from_row(Elevation, row)
     raise ValueError(f"no elevation of facade {facade} among {table.num_rows} rows")
+
+
+@dataclass(frozen=True)
+class Lent:
+    """What neighbours lent to a front, in numbers."""
+
+    photos: tuple[str, ...]  # keys
+    fits: str  # of each lender, as JSON
+    unseen: int
+    left: int
+    front: int
+
+
+def unread(photo: str, facade: int, why: str) -> Fit:
+    """Tell of a lender whose elevation can't be read."""
+    words = f"its elevation can't be read: {why}"
+    return Fit(photo, facade, False, words, 0.0, 0, 0.0, 0)  # noqa: FBT003
+
+
+def borrowed_table(made: Borrowed, lost: list[Fit]) -> pa.Table:
+    """Write a front that neighbours lent to, and where what they lent comes from."""
+    marks = made.elevation.evidence
+    row = tables.to_row(made.elevation) | {
+        "sources": tables.to_png(made.sources),
+        "photos": list(made.photos),
+        "fits": json.dumps([asdict(one) for one in (*made.fits, *lost)]),
+        "unseen": made.unseen,
+        "left": int(inpaint.holes(marks).sum()),
+        "front": int((marks != evidence.NOTHING).sum()),
+    }
+    return pa.Table.from_pylist([row], BORROWED)
+
+
+def lent_from(table: pa.Table) -> Lent:
+    """Read what neighbours lent to a front, without its pixels."""
+    row = table.to_pylist()[0]
+    return Lent(tuple(row.pop("photos")), **{name: row[name] for name in LENT[1:]})
+
+
+def elevations_from(table: pa.Table) -> dict[int, Elevation]:
+    """Read all elevations of a photo, by facade."""
+    return {
+        row["facade"]: tables.from_row(Elevation, row)
+        for row in table.to_pylist()
+        if row["reason"] is None
+    }

@@ -31,6 +31,8 @@ class Bench:
     retry: bool = False  # what ended its process in an earlier run
     image_format: ImageFormat = "webp"  # of the models' textures
     damaged: list[str] = field(default_factory=list, compare=False)  # met and dropped
+    found: list[str] = field(default_factory=list, compare=False)  # and not made
+    made: list[str] = field(default_factory=list, compare=False)
 
     def attempt(self, function: Callable[..., Any], stage: str, *tools: Any) -> Attempt:
         """Have a stage's function work on elements, each where it can harm no other."""
@@ -51,7 +53,9 @@ class Bench:
         if verdict is False:
             made = make()
             self.store.keep(path, made)
+            self.made.append(path)
             return made if isinstance(made, Rejection) else None
+        self.found.append(path)
         return verdict if isinstance(verdict, Rejection) else None
 
     def read(
@@ -89,9 +93,14 @@ class Work:
 
     def __call__(self, ref: Any) -> Any:
         """Work on one element."""
+        self.bench.found.clear()  # what is left of one that crashed
+        self.bench.made.clear()
         return self.function(ref, self.bench, *self.tools)
 
-    @property
-    def damaged(self) -> list[str]:
-        """The artifacts that were found damaged, and made again."""
-        return self.bench.damaged
+    def noticed(self) -> tuple[int, bool]:
+        """Tell how much was made again, and whether all was there; then forget it."""
+        bench = self.bench
+        healed, skipped = len(bench.damaged), bool(bench.found and not bench.made)
+        for one in (bench.damaged, bench.found, bench.made):
+            one.clear()
+        return healed, skipped

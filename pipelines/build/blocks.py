@@ -11,11 +11,20 @@ import apache_beam as beam
 import pyarrow as pa
 from apache_beam import pvalue
 
-from nostalgin_core import block, model
+from nostalgin_core import block, model, views
 from nostalgin_core.block import Settled
-from nostalgin_core.records import Block, Building, Elevation, Rejection, Texture
+from nostalgin_core.records import (
+    Block,
+    Building,
+    Elevation,
+    Rejection,
+    Seen,
+    Texture,
+)
+from pipelines.build import compare
 from pipelines.build.bench import Bench
-from pipelines.build.stages import FacadeRef, inpainted, named
+from pipelines.build.stages import FacadeRef, named
+from pipelines.build.worn import Worn, inpainted
 from pipelines.index.plan import BlockTask, Name
 from pipelines.store import tables
 
@@ -40,6 +49,7 @@ class Placed:
     task: BlockTask
     facades: tuple[FacadeRef, ...]  # all that were seen, ordered
     settled: Settled
+    compared: str  # the artifact that tells which facades look alike; "": there is none
 
     @property
     def key(self) -> str:
@@ -51,10 +61,13 @@ class Placed:
         """The cuboids."""
         return self.settled.block
 
-    def worn(self) -> tuple[FacadeRef, ...]:
-        """List the facades that a wall wears: only these need inpainting."""
+    def worn(self) -> tuple[Worn, ...]:
+        """List the facades that a wall wears, and who else shows their fronts."""
         of = {texture_of(ref): ref for ref in reversed(self.facades)}
-        return tuple(of[texture] for texture in self.settled.worn())
+        return tuple(
+            Worn(of[one.texture], one.front_id, tuple(of[o] for o in one.lenders))
+            for one in self.settled.shown()
+        )
 
 
 @dataclass(frozen=True)
@@ -105,8 +118,10 @@ class Model(beam.PTransform):
 def placed(
     grouped: tuple[str, dict[str, Iterable[Any]]], bench: Bench
 ) -> list[Placed | Rejection]:
-    """Give facades to the fronts of a block, and raise its buildings."""
-    del bench  # numbers alone: nothing is read or kept
+    """Give facades to the fronts of a block, and raise its buildings.
+
+    Which facades look alike is kept; all else is numbers.
+    """
     _, parts = grouped
     (task,) = parts["task"]
     facades = meant(sorted(parts["facades"], key=order), dict(task.targets_px))
@@ -116,11 +131,31 @@ def placed(
     for photo, front_id in task.photos:
         if photo in keys:
             candidates.setdefault(keys[photo], []).append(front_id)
-    seen = tuple({texture_of(ref): ref.seen for ref in facades}.values())
-    known = dict(task.heights_m)
-    settled = block.settle(task.block, task.fronts, candidates, seen, heights_m=known)
+    # Of one content under two names the first counts, as it does where it is worn.
+    first: dict[Texture, Seen] = {}
+    for ref in facades:
+        first.setdefault(texture_of(ref), ref.seen)
+    seen = tuple(first.values())
+    known = told(task)
+    stood = list({texture_of(ref): ref for ref in reversed(facades)}.values())[::-1]
+    stretches = [views.stretch(ref.seen, ref.standpoint) for ref in stood]
+    looks = compare.compared(task.fronts, candidates, stood, bench)
+    settled = block.settle(
+        task.block,
+        task.fronts,
+        candidates,
+        seen,
+        stretches=stretches,
+        alike=looks.alike,
+        **known,
+    )
     rejections = [named(one, names[one.key]) for one in settled.rejections]
-    return [Placed(task, facades, settled), *rejections]
+    return [Placed(task, facades, settled, looks.path), *rejections]
+
+
+def told(task: BlockTask) -> dict[str, dict[str, float]]:
+    """Give what is known of a block beside its rows."""
+    return {"heights_m": dict(task.heights_m), "widths_m": dict(task.widths_m)}
 
 
 def meant(
@@ -158,7 +193,7 @@ def modelled(
     """Keep a block's GLB."""
     _, parts = grouped
     (one,) = parts["placed"]
-    one = only(one, {texture_of(ref) for ref in parts["finished"]})
+    one = only(one, {texture_of(one.own) for one in parts["finished"]})
     key = bench.versions.key("block", *contents(one, bench))
     path = bench.versions.path("block", key)
     make = partial(bench.keep, path, partial(glb, one, bench))
@@ -171,13 +206,12 @@ def modelled(
 
 def only(one: Placed, done: set[Texture]) -> Placed:
     """Raise the buildings anew if a facade they wear could not be finished."""
-    if all(texture_of(ref) in done for ref in one.worn()):
+    if all(texture in done for texture in one.settled.worn()):
         return one
     before = one.settled
     kept = tuple(a for a in before.assignments if (a.photo, a.facade) in done)
     seen = tuple(ref.seen for ref in one.facades)
-    known = dict(one.task.heights_m)
-    anew = block.raised(one.key, before.fronts, kept, seen, heights_m=known)
+    anew = block.raised(one.key, before.fronts, kept, seen, **told(one.task))
     return replace(one, settled=replace(before, assignments=kept, block=anew))
 
 
@@ -187,10 +221,7 @@ def contents(one: Placed, bench: Bench) -> list[str]:
         [b.building_id, b.footprint_m.tolist(), b.height_m, b.assumed, walls(b)]
         for b in one.block.buildings
     ]
-    finished = [
-        bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
-        for ref in one.worn()
-    ]
+    finished = [each.inpaint_key(bench.versions) for each in one.worn()]
     return [
         json.dumps([one.key, one.task.credit, buildings, model.table(one.settled)]),
         json.dumps([bench.image_format, asdict(rights(one))]),
@@ -201,7 +232,8 @@ def contents(one: Placed, bench: Bench) -> list[str]:
 def rights(one: Placed) -> model.Rights:
     """Tell whose the photographs are that a block's walls wear."""
     task, told = one.task, dict(one.task.told)
-    photos = {ref.seen.photo: ref.photo for ref in one.worn()}
+    refs = [ref for each in one.worn() for ref in (each.own, *each.lenders)]
+    photos = {ref.seen.photo: ref.photo for ref in refs}
     names = {key: (ref.root, ref.name) for key, ref in sorted(photos.items())}
     worn = {key: dict(told[name]) for key, name in names.items() if name in told}
     return model.Rights(task.credit, task.licence, task.sources, worn)
@@ -214,7 +246,7 @@ def walls(building: Building) -> list[dict[str, Any]]:
 
 def glb(one: Placed, bench: Bench) -> pa.Table:
     """Make a block's GLB from its cuboids and its finished elevations."""
-    views = {texture_of(ref): finished(ref, bench) for ref in one.worn()}
+    views = {texture_of(each.own): finished(each, bench) for each in one.worn()}
     made = model.model(
         one.settled, views, rights=rights(one), image_format=bench.image_format
     )
@@ -231,9 +263,8 @@ def glb(one: Placed, bench: Bench) -> pa.Table:
     return pa.Table.from_pylist([row], MODEL)
 
 
-def finished(ref: FacadeRef, bench: Bench) -> Elevation:
+def finished(one: Worn, bench: Bench) -> Elevation:
     """Read a facade's finished elevation."""
-    key = bench.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
-    again = partial(inpainted, ref, bench, bench.network("inpaint"))
-    rows = bench.read(bench.versions.path("inpaint", key), again)
-    return tables.records(Elevation, rows)[0]
+    again = partial(inpainted, one, bench, bench.network("inpaint"))
+    path = bench.versions.path("inpaint", one.inpaint_key(bench.versions))
+    return tables.records(Elevation, bench.read(path, again))[0]

@@ -1,8 +1,6 @@
 """One build from its manifest to its published run."""
 
 import contextlib
-import copy
-import re
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -11,16 +9,15 @@ from functools import partial
 from typing import Any, Final
 
 import apache_beam as beam
-from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
-from apache_beam.runners.runner import PipelineResult
+from apache_beam.options.pipeline_options import PipelineOptions
 
 from pipelines import site
-from pipelines.build import cluster, embedded, rows
+from pipelines.build import cluster, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
-from pipelines.build.corrected import Corrected
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
+from pipelines.build.launched import launched
 from pipelines.build.noted import note, stages
 from pipelines.build.options import CityOptions, part
 from pipelines.build.prepared import Prepared, prepared
@@ -28,6 +25,7 @@ from pipelines.build.report import (
     Lost,
     Report,
     check,
+    last_shown,
     remember,
     reported,
     shown_before,
@@ -37,7 +35,7 @@ from pipelines.index import asked
 from pipelines.index.asked import Asked
 from pipelines.index.row import Row
 from pipelines.models import one_thread
-from pipelines.store import Damaged, Store, Unstored, held, pack, runs
+from pipelines.store import Damaged, Store, held, pack, runs
 from pipelines.store.versions import Versions
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
@@ -46,12 +44,6 @@ LEAST_SHOWN: Final = 0.5  # of the photos: a city that shows more is never held 
 Tell = Callable[..., None]  # an event's word, a line for people, facts for machines
 Count = Callable[[], dict[str, int]]  # the artifacts of each stage
 Watch = Callable[[Count, int], AbstractContextManager[object]]  # of so many photos
-
-# As a worker's traceback has it; a run's tables are written without `keep`.
-UNWRITTEN: Final = (
-    rf"{Unstored.__name__}: (.*)",
-    r"(?:OS|Permission|[A-Z]\w+Directory)Error: (.*)",
-)
 
 
 def silent(event: str, text: str, **facts: Any) -> None:
@@ -80,14 +72,23 @@ def build(
         Busy: if another run is at work in the city folder.
         Unrun: if a cluster does not answer, or gives up.
     """
-    one_thread()
+    readied(options)
     ours = options.view_as(CityOptions)
     store, shard = Store(ours.city), part(ours.shard)
-    if in_process(options) and ours.stage_seconds:
-        POOL.fill()  # before there are threads and open files
-    cluster.reached(options)  # which takes a second, where somebody is there
     with held(store, shared=shard != (1, 1)):
         return made(options, store, shard, tell, watch)
+
+
+def readied(options: PipelineOptions) -> None:
+    """Ready this process for a run, before there are threads and open files.
+
+    Raises:
+        Unrun: if a cluster does not answer.
+    """
+    one_thread()
+    if in_process(options) and options.view_as(CityOptions).stage_seconds:
+        POOL.fill()
+    cluster.reached(options)  # which takes a second, where somebody is there
 
 
 def made(
@@ -100,24 +101,40 @@ def made(
     """Build in a city folder that is ours for the time."""
     ours = options.view_as(CityOptions)
     asked_for = prepared(ours, store, shard, partial(warned, tell))
+    return carried_out(options, asked_for, shard, tell, watch)
+
+
+def carried_out(
+    options: PipelineOptions,
+    asked_for: Prepared,
+    shard: tuple[int, int],
+    tell: Tell,
+    watch: Watch,
+) -> Report:
+    """Do what a run is asked for, check that nothing was lost, and publish."""
+    ours, store = options.view_as(CityOptions), asked_for.bench.store
     bench, todo, run = asked_for.bench, asked_for.todo, asked_for.todo.run
     counts = {"photos": todo.photos, "blocks": todo.blocks}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
-    noted = partial(note, store, run, bench.versions, options, began)
+    noted = partial(
+        note, store, run, bench.versions, options, began, told_of=asked_for.told_of
+    )
     noted()  # a folder that can't be written to is told now
     watched = watch if "://" not in store.root else unwatched
     again = 0
     for _ in range(HEALINGS):
         with watched(partial(bench.versions.counts, store.root), todo.photos):
-            result = launched(options, todo, bench, asked_for.mended)
-        check(store, run, bench.versions)
+            result = launched(options, partial(wired, asked_for), store)
+        check(store, asked_for.work.run, bench.versions)
+        asked_for.settle()
         done = stages(result)
-        noted(done=done)
+        told = noted(done=done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
         if shard != (1, 1) or not report.blocks:
+            metered(store, told, ours.shard)
             return report
         try:
             anyway = ours.publish_anyway
@@ -129,8 +146,24 @@ def made(
             again += len(spoiled)
         else:
             tidied(store, bench.versions)
+            metered(store, told, ours.shard)
             return shown
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
+
+
+def made_alone(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> Report:
+    """Make artifacts that a later run finds; no run is noted, and nothing published."""
+    bench, work = asked_for.bench, asked_for.work
+    store = bench.store
+    watched = watch if "://" not in store.root else unwatched
+    with watched(partial(bench.versions.counts, store.root), asked_for.todo.photos):
+        result = launched(options, partial(wired, asked_for), store)
+    check(store, work.run, bench.versions)
+    again = sum(one.get("healed", 0) for one in stages(result).values())
+    report = replace(reported(store, work.run, work), healed=again)
+    report = replace(report, run=asked_for.todo.run)
+    tidied(store, bench.versions)
+    return report
 
 
 def warned(tell: Tell, warning: str) -> None:
@@ -146,6 +179,13 @@ def tidied(store: Store, versions: Versions) -> None:
     with contextlib.suppress(OSError):
         for stage in vars(versions):
             pack(store, versions.folder(stage))
+
+
+def metered(store: Store, told: dict[str, Any], shard: str) -> None:
+    """Write what a run came to for Prometheus."""
+    from pipelines.build import prometheus  # which loads a web server, too
+
+    prometheus.write(store, told, shard, succeeded=last_shown(store))
 
 
 def published(
@@ -169,6 +209,7 @@ def published(
         return replace(report, held=True)
     rows = [one for one in asked.rows(store, report.run) if isinstance(one, Row)]
     told = {"title": todo.title, "anchors": asked_for.anchors}
+    told["trusting"] = asked_for.trusting
     for doubt in site.publish(store, report.run, bench.versions, rows, **told):
         warned(tell, doubt)
     remember(store, report)
@@ -178,51 +219,10 @@ def published(
     return report
 
 
-def launched(
-    options: PipelineOptions, todo: Asked, bench: Bench, mended: Corrected
-) -> PipelineResult:
-    """Run the pipeline to its end.
-
-    Raises:
-        Lost: if what was made could not be kept.
-        Unrun: if a cluster gave up.
-    """
-    runner = options.view_as(StandardOptions).runner
-    if runner != embedded.EMBEDDED:
-        with cluster.told(runner):
-            pipeline = beam.Pipeline(options=options)
-            write(city(pipeline, todo, bench, mended.directions()), bench, todo)
-            result = pipeline.run()
-            result.wait_until_finish()
-        return result
-    given = copy.deepcopy(options)  # which the embedded runner changes for itself
-    pipeline = beam.Pipeline(embedded.runner(given), options=given)
-    write(city(pipeline, todo, bench, mended.directions()), bench, todo)
-    try:
-        with embedded.on_loopback(), embedded.ending_with_a_worker():
-            result = pipeline.run()
-            result.wait_until_finish()
-    except embedded.WorkerLost as problem:
-        words = f"{problem}: build again, with fewer workers if memory is short"
-        raise Lost(f"{words}; what is kept already is not made twice") from problem
-    except Unstored as problem:
-        raise Lost(unstored(bench.store, str(problem))) from problem
-    except RuntimeError as problem:  # a worker's exception reaches us as its traceback
-        lines = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
-        told = next((one for one in lines if one is not None), None)
-        if told is None:
-            raise
-        raise Lost(unstored(bench.store, told[1])) from problem
-    return result
-
-
-def unstored(store: Store, why: str) -> str:
-    """Say that a run ended because what it made could not be kept."""
-    why = why.partition(" [while running")[0]  # which Beam adds
-    return (
-        f"{store.root} takes no more artifacts: {why}; make room or mend the folder, "
-        "and build again: what is kept already is not made twice"
-    )
+def wired(asked_for: Prepared, pipeline: beam.Pipeline) -> None:
+    """Wire a build: its stages, and its tables."""
+    bench, todo = asked_for.bench, asked_for.work
+    write(city(pipeline, todo, bench, asked_for.mended.directions()), bench, todo)
 
 
 def write(built: Built, bench: Bench, todo: Asked) -> None:
@@ -231,9 +231,12 @@ def write(built: Built, bench: Bench, todo: Asked) -> None:
     parts = runs.parts_of(todo.rows)
     for name, elements, of_each in (
         ("photos", built.photos, rows.photo_rows),
+        ("stamps", built.photos, rows.stamp_rows),
         ("facades", built.facades, rows.FacadeRows(of)),
         ("buildings", built.blocks, rows.BuildingRows(of)),
         ("blocks", built.blocks, rows.block_rows),
+        ("claims", built.placed, rows.claim_rows),
+        ("borrowed", built.borrowed, rows.BorrowedRows(of)),
         ("rejections", built.rejections, rows.rejection_rows),
     ):
         _ = elements | f"Table {name}" >> WriteTable(

@@ -3,7 +3,7 @@
     rows --Plan--> photos, and blocks with their fronts
     photos --Read--Segment--Matte--Rectify--> facades (numbers)
     facades + blocks --GroupByKey block--Assign--> cuboids, and which facades they wear
-    worn facades --Inpaint--> finished
+    worn facades + those of the same fronts --Borrow--Inpaint--> finished
     finished + cuboids --GroupByKey block--Model--> GLB
 
 Only references pass between steps. A facade that no wall wears is never inpainted.
@@ -21,13 +21,13 @@ from pipelines.build.corrected import Corrected
 from pipelines.build.planned import Plan
 from pipelines.build.stages import (
     FacadeRef,
-    Inpaint,
     Matte,
     Read,
     Rectify,
     Segment,
     Thumbnail,
 )
+from pipelines.build.worn import Borrow, Inpaint, Worn
 from pipelines.index.asked import Asked
 
 
@@ -37,6 +37,7 @@ class Built(NamedTuple):
     photos: pvalue.PCollection  # read
     facades: pvalue.PCollection  # rectified
     placed: pvalue.PCollection  # blocks with cuboids
+    borrowed: pvalue.PCollection  # worn facades, with what neighbours lend to them
     blocks: pvalue.PCollection  # blocks with models
     rejections: pvalue.PCollection
 
@@ -57,28 +58,40 @@ def city(
         | "Group facades" >> beam.CoGroupByKey()
         | Assign(bench)
     )
-    finished = (
+    borrowed = (
         placed.made
         | "Worn" >> beam.FlatMap(lambda one: one.worn())
         | "Spread facades" >> beam.Reshuffle()
-        | Inpaint(bench)
+        | Borrow(bench)
     )
+    finished = borrowed.made | Inpaint(bench)
     blocks = (
         {
             "placed": placed.made
             | "Name blocks" >> beam.Map(lambda one: (one.key, one)),
-            "finished": finished.made | "By block again" >> beam.FlatMap(keyed),
+            "finished": finished.made | "By block again" >> beam.FlatMap(worn_by),
         }
         | "Group finished" >> beam.CoGroupByKey()
         | "With cuboids" >> beam.Filter(lambda group: group[1]["placed"])
         | Model(bench)
     )
-    stages = (read, small, found, matted, facades, placed, finished, blocks)
+    stages = (
+        *(read, small, found, matted, facades),
+        *(placed, borrowed, finished, blocks),
+    )
     rejected = tuple(stage.rejected for stage in stages)
     rejections = (*rejected, planned.rejections) | "Rejections" >> beam.Flatten()
-    return Built(read.made, facades.made, placed.made, blocks.made, rejections)
+    return Built(
+        *(read.made, facades.made, placed.made),
+        *(borrowed.made, blocks.made, rejections),
+    )
 
 
 def keyed(ref: FacadeRef) -> Iterable[tuple[str, Any]]:
     """Send a facade to every block that its photo may show."""
     return [(block, ref) for block in ref.photo.blocks]
+
+
+def worn_by(one: Worn) -> Iterable[tuple[str, Any]]:
+    """Send what a wall wears to every block that its photo may show."""
+    return [(block, one) for block in one.own.photo.blocks]

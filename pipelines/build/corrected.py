@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from nostalgin_core.records import Rejection
-from pipelines import corrections
+from pipelines.build.streets import Streets
 from pipelines.index import manifest
-from pipelines.index.plan import BlockTask
+from pipelines.index.plan import BlockTask, PhotoRef
 from pipelines.index.row import Row
 from pipelines.index.source import Source
 from pipelines.store import Store
@@ -20,6 +21,29 @@ class Corrected:
     sha256: str = ""  # of the corrections
     heights_m: dict[str, float] = field(default_factory=dict)  # by building
     targets_px: dict[str, float] = field(default_factory=dict)  # x, by photo
+    outlines: dict[str, str] = field(default_factory=dict)  # of fronts, by photo
+    quads: dict[str, str] = field(default_factory=dict)  # the same
+    streets: Streets = field(default_factory=Streets)  # told with the city's places
+
+    def drawn_on(self, name: str) -> tuple[str, str]:
+        """Give what somebody drew on a photo: an outline and a quad."""
+        return self.outlines.get(name, ""), self.quads.get(name, "")
+
+    def drawn(self, ref: PhotoRef) -> PhotoRef:
+        """Tell a photo what somebody drew on it."""
+        outline, quad = self.drawn_on(ref.name)
+        return replace(ref, outline=outline, quad=quad)
+
+    def told(self) -> dict[str, dict[str, Any]]:
+        """Give what no row tells, by what it is told of."""
+        return {
+            "heights_m": self.heights_m,
+            "targets_px": self.targets_px,
+            "outlines": self.outlines,
+            "quads": self.quads,
+            "widths_m": dict(self.streets.widths_m),
+            "gaps_m": dict(self.streets.gaps_m),
+        }
 
     def directions(self) -> "Corrected":
         """Leave out the rows, which workers read elsewhere."""
@@ -27,6 +51,7 @@ class Corrected:
 
     def directed(self, task: BlockTask) -> BlockTask:
         """Tell a block what no row tells: heights that are known, and facades meant."""
+        task = self.streets.told(task)
         if not self.heights_m and not self.targets_px:
             return task
         lots = {f"{front.block}-{front.lot}" for front in task.fronts}
@@ -55,14 +80,23 @@ def corrected(store: Store, there: Source) -> Corrected:
 
     Where there are any, all rows are held at once.
     """
+    from pipelines import corrections  # whose models of records no worker needs
+
     given = corrections.read(store)
     if not given.sha256:
         return Corrected()
     cells = (one for batch in there.batches() for one in batch)
     results = list(manifest.checked(cells))
     rows = [one for one in results if isinstance(one, Row)]
-    made = corrections.applied(rows, given)
+    made = corrections.fitting(corrections.applied(rows, given), store)
     refused = [one for one in results if isinstance(one, Rejection)]
     ordered = sorted(made.rows, key=in_place)
     every = (*refused, *made.rejections, *ordered)
-    return Corrected(every, given.sha256, dict(made.heights_m), dict(made.targets_px))
+    return Corrected(
+        every,
+        given.sha256,
+        dict(made.heights_m),
+        dict(made.targets_px),
+        dict(made.outlines),
+        dict(made.quads),
+    )

@@ -26,6 +26,7 @@ from pipelines.store import Aside, Unstored
 
 ASIDE: Final = "put aside"
 MOST_FILES: Final = 1 << 16  # that a process may well have open
+MEMBER: Final = 1 / 30  # of an element's time, for each member of a group
 REMEDY: Final = "`nostalgin build --retry` tries it again, with the limits given then"
 
 
@@ -150,12 +151,14 @@ class Isolation:
             Crashed: if it raised.
             Unstored: if what it made can't be kept.
         """
+        limits = self.limits
         if isinstance(element, tuple):  # a group, whose parts may be read but once
             element = element[0], {k: list(v) for k, v in element[1].items()}
+            limits = of_group(limits, max(map(len, element[1].values()), default=0))
         known = self.aside.of(stage, element)
         if known is not None:
             return Done(known, 0.0, 0)
-        answer = self._asked(function, element)
+        answer = self._asked(function, element, limits)
         if isinstance(answer, Done):
             return answer
         if isinstance(answer, Failed):
@@ -166,8 +169,15 @@ class Isolation:
         self.aside.put(stage, element, why)
         return Done(why, 0.0, 0)
 
-    def _asked(self, function: bytes, element: Any) -> Done | Failed | Died:
+    def _asked(
+        self, function: bytes, element: Any, limits: Limits
+    ) -> Done | Failed | Died:
         for _ in range(ATTEMPTS):
             with contextlib.suppress(EOFError, ConnectionError), POOL.one() as one:
-                return one.ask(function, element, self.limits)
+                return one.ask(function, element, limits)
         return Died(("its supervisor was killed",) * ATTEMPTS)
+
+
+def of_group(limits: Limits, members: int) -> Limits:
+    """Give a block the more time the more facades it has, which it compares."""
+    return limits._replace(seconds=limits.seconds * (1 + members * MEMBER))

@@ -59,6 +59,7 @@ class Plan(beam.PTransform):
             sent.photos
             | "By photo" >> beam.GroupByKey()
             | "Photos" >> beam.MapTuple(photo_ref)
+            | "Drawn" >> beam.Map(self.mended.drawn)
         )
         blocks = (
             sent.fronts

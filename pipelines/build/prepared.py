@@ -1,21 +1,27 @@
 """What a run is to do, and with what: looked up before anything is done."""
 
+import json
 import os
 import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 from pipelines import index, site
 from pipelines.build.bench import Bench
 from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.isolation import Limits
 from pipelines.build.options import CityOptions
+from pipelines.build.streets import Streets
 from pipelines.index import manifest
 from pipelines.index.asked import ASKED, Asked, Shard, Warn, ask
 from pipelines.index.manifest import Unusable
 from pipelines.index.source import Source, found
 from pipelines.models import NETWORKS, Models
-from pipelines.store import Store, runs
+from pipelines.store import Store, key_of, runs
 from pipelines.store.versions import Versions
+
+DIRECTED: Final = "directed.json"
 
 
 @dataclass(frozen=True)
@@ -26,6 +32,15 @@ class Prepared:
     todo: Asked
     mended: Corrected
     anchors: index.Anchors
+    told_of: Mapping[str, str]  # hashes of what the run follows from
+    redone: Asked | None = None  # what the pipeline is to do, unless it is all
+    settle: Callable[[], None] = lambda: None  # puts what was not redone beside it
+    trusting: bool = False  # that what stands in the site is what we wrote there
+
+    @property
+    def work(self) -> Asked:
+        """Name the rows that the pipeline works on."""
+        return self.todo if self.redone is None else self.redone
 
 
 def prepared(ours: CityOptions, store: Store, shard: Shard, warn: Warn) -> Prepared:
@@ -41,20 +56,58 @@ def prepared(ours: CityOptions, store: Store, shard: Shard, warn: Warn) -> Prepa
     anchors = anchored(store, there)
     for line in anchors.warnings:
         warn(line)
+    mended = replace(mended, streets=Streets(anchors.widths_m, anchors.gaps_m))
     bench = bench_of(ours, store)
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
-    schemes = [one for one in ours.allow_schemes.split(",") if one]
-    sources = there.sha256 + mended.sha256 + anchors.sha256
-    words = " ".join([ours.shard, *schemes, *(["png"] if ours.no_webp else [])])
-    run = runs.run_id(sources, bench.versions, words)
-    own = {"schemes": schemes, "shard": shard, "warn": warn}
+    sources = sources_of(there, mended, anchors)
+    run = runs.run_id(sources, bench.versions, words_of(ours))
+    own = {"schemes": schemes_of(ours), "shard": shard, "warn": warn}
     todo = ask(store, there, run, results=mended.rows, **own)
     if shard == (1, 1) and not todo.blocks:
         store.drop(runs.table_path(run, ASKED))
         store.drop_folder(f"runs/{run}")
         raise Unusable(nothing(store, todo))
-    return Prepared(bench, todo, mended, anchors)
+    direct(store, run, mended)
+    told_of = told_of_run(there, mended, anchors, schemes_of(ours))
+    return Prepared(bench, todo, mended, anchors, told_of)
+
+
+def told_of_run(
+    there: Source, mended: Corrected, anchors: index.Anchors, schemes: Sequence[str]
+) -> dict[str, str]:
+    """Tell by which a later run knows what this one was told."""
+    rows = key_of(there.sha256, mended.sha256, anchors.sha256, *schemes)
+    return {"rows": rows, "places": anchors.sha256, "title": there.title}
+
+
+def direct(store: Store, run: str, mended: Corrected) -> None:
+    """Write beside a run's tables what people told, and places, that no row tells."""
+    index.keep(store, f"runs/{run}")
+    told = mended.told()
+    if any(told.values()):
+        data = json.dumps(told, sort_keys=True).encode()
+        store.write_bytes(f"runs/{run}/{DIRECTED}", data)
+
+
+def sources_of(there: Source, mended: Corrected, anchors: index.Anchors) -> str:
+    """Hash the files that tell what a run is asked for."""
+    return there.sha256 + mended.sha256 + anchors.sha256
+
+
+def schemes_of(ours: CityOptions) -> list[str]:
+    """List the schemes that roots may have."""
+    return [one for one in ours.allow_schemes.split(",") if one]
+
+
+def words_of(ours: CityOptions) -> str:
+    """Write the options that change what comes of a run."""
+    return written_words(ours.shard, schemes_of(ours), png=ours.no_webp)
+
+
+def written_words(shard: str, schemes: Sequence[str], *, png: bool) -> str:
+    """Write a shard, schemes and the textures' form in one."""
+    return " ".join([shard, *schemes, *(["png"] if png else [])])
 
 
 def bench_of(ours: CityOptions, store: Store) -> Bench:

@@ -24,6 +24,7 @@ from pipelines.store.versions import Versions
 PUBLISHED: Final = "published.json"
 MADE: Final = (  # which column of which table names the artifacts of which stage
     ("facades", "elevations", "rectify"),
+    ("borrowed", "borrowed", "borrow"),
     ("buildings", "elevations", "inpaint"),
     ("blocks", "model", "block"),
 )
@@ -198,8 +199,21 @@ def remember(store: Store, report: Report) -> None:
 def shown_before(store: Store) -> float:
     """Read which share of its photos the published city shows; none: there is none."""
     try:
-        run = store.read_bytes(site.CURRENT).decode().strip()
-        told = json.loads(store.read_bytes(f"runs/{run}/{PUBLISHED}"))
-        return float(told["shown_share"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return float(of_shown(store, PUBLISHED)["shown_share"])
+    except (ValueError, KeyError, TypeError):
         return 0.0
+
+
+def last_shown(store: Store) -> dict[str, Any]:
+    """Read when the run was whose city is shown; nothing if there is none."""
+    return of_shown(store, "run.json")
+
+
+def of_shown(store: Store, name: str) -> dict[str, Any]:
+    """Read a record of the published run."""
+    try:
+        run = store.read_bytes(site.CURRENT).decode().strip()
+        told = json.loads(store.read_bytes(f"runs/{run}/{name}"))
+    except (OSError, ValueError):
+        return {}
+    return told if isinstance(told, dict) else {}

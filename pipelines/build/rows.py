@@ -9,10 +9,11 @@ import apache_beam as beam
 from apache_beam import pvalue
 
 from nostalgin_core import model
-from nostalgin_core.records import Height, Rejection
+from nostalgin_core.records import Height, Rejection, Texture
 from pipelines import site
 from pipelines.build.blocks import Modelled, Placed, texture_of
 from pipelines.build.stages import FacadeRef
+from pipelines.build.worn import Worn
 from pipelines.index.plan import PhotoRef
 from pipelines.store import Store, runs, tables
 from pipelines.store.versions import Versions
@@ -22,8 +23,15 @@ Rows = Iterable[dict[str, Any]]
 
 def photo_rows(ref: PhotoRef) -> Rows:
     """Tell which file a photo was."""
-    row = vars(ref) | {"key": ref.sha256[:16], "blocks": list(ref.blocks)}
-    return [row]
+    told = {"name": ref.name, "root": ref.root, "sha256": ref.sha256}
+    told |= {"outline": ref.outline, "quad": ref.quad}
+    return [told | {"key": ref.sha256[:16], "blocks": list(ref.blocks)}]
+
+
+def stamp_rows(ref: PhotoRef) -> Rows:
+    """Tell how large a photo's file was, and when it was changed."""
+    told = {"name": ref.name, "root": ref.root}
+    return [told | {"size": ref.size, "mtime_ns": ref.mtime_ns}]
 
 
 @dataclass(frozen=True)
@@ -34,7 +42,7 @@ class FacadeRows:
 
     def __call__(self, ref: FacadeRef) -> Rows:
         """Write one row."""
-        key = self.versions.rectify_key(ref.photo.sha256)
+        key = self.versions.rectify_key(ref.photo.sha256, *ref.photo.drawn)
         where = self.versions.path("rectify", key)
         known = tables.to_row(ref.seen) | tables.to_row(ref.standpoint)
         return [{"name": ref.photo.name, "elevations": where} | known]
@@ -51,6 +59,7 @@ class BuildingRows:
         one = done.placed
         refs = {texture_of(ref): ref for ref in one.facades}
         scores = {(a.photo, a.facade): a.score for a in one.settled.assignments}
+        paths = self._paths(one)
         for building in one.block.buildings:
             own = one.settled.fronts_of(building.building_id)
             worn = [w.texture for w in building.walls if w.texture is not None]
@@ -69,12 +78,42 @@ class BuildingRows:
                 "roots": [refs[texture].photo.root for texture in worn],
                 "facades": [facade for _, facade in worn],
                 "scores": [scores[texture] for texture in worn],
-                "elevations": [self._path(refs[texture]) for texture in worn],
+                "elevations": [paths[texture] for texture in worn],
             }
 
-    def _path(self, ref: FacadeRef) -> str:
-        key = self.versions.inpaint_key(ref.photo.sha256, ref.seen.facade)
-        return self.versions.path("inpaint", key)
+    def _paths(self, one: Placed) -> dict[Texture, str]:
+        return {
+            texture_of(each.own): self.versions.path(
+                "inpaint", each.inpaint_key(self.versions)
+            )
+            for each in one.worn()
+        }
+
+
+@dataclass(frozen=True)
+class BorrowedRows:
+    """Tell what other photographs lent to a front."""
+
+    versions: Versions
+
+    def __call__(self, one: Worn) -> Rows:
+        """Write one row."""
+        lent, unseen = one.lent, 1 - one.own.seen.photographed
+        whole = max(lent.front, 1) if lent else 1
+        key = one.borrow_key(self.versions)
+        return [
+            {
+                "front_id": one.front_id,
+                "name": one.own.photo.name,
+                "facade": one.own.seen.facade,
+                "lenders": [each.photo.name for each in one.lenders],
+                "photos": list(lent.photos) if lent else [],
+                "unseen": lent.unseen / whole if lent else unseen,
+                "left": lent.left / whole if lent else unseen,
+                "fits": lent.fits if lent else "[]",
+                "borrowed": [self.versions.path("borrow", key)] if lent else [],
+            }
+        ]
 
 
 def known(height: Height | None) -> dict[str, Any]:
@@ -110,6 +149,7 @@ def block_rows(done: Modelled) -> Rows:
             "assumed": sum(building.assumed for building in built.buildings),
             "credit": done.placed.task.credit,
             "record": record(done.placed),
+            "compared": [done.placed.compared] if done.placed.compared else [],
         }
     ]
 
@@ -129,6 +169,15 @@ def record(one: Placed) -> str:
         photos=told,
     )
     return json.dumps(known, sort_keys=True)
+
+
+def claim_rows(one: Placed) -> Rows:
+    """Tell which front each facade of a block's photographs shows."""
+    names = {ref.seen.photo: ref.photo.name for ref in reversed(one.facades)}
+    return [
+        {"block": one.key, "name": names[claim.photo], **tables.to_row(claim)}
+        for claim in one.settled.claims
+    ]
 
 
 def rejection_rows(one: Rejection) -> Rows:

@@ -11,19 +11,19 @@ from functools import partial
 from typing import Any
 
 import apache_beam as beam
+import numpy as np
 import pyarrow as pa
 from apache_beam import pvalue
 
-from nostalgin_core import inpaint, matte, quantise, rectify, segment
+from nostalgin_core import quantise, segment, steps
 from nostalgin_core.records import (
-    Elevation,
+    Drawn,
     Instance,
     Photo,
     Rejection,
     Seen,
     Standpoint,
 )
-from nostalgin_core.steps import rounded
 from pipelines import site
 from pipelines.build import artifacts
 from pipelines.build.attempt import Attempt
@@ -58,13 +58,17 @@ class Read(beam.PTransform):
 
 def read(ref: PhotoRef) -> PhotoRef | Rejection:
     """Hash a photo's bytes."""
+    photos = Store(ref.root)
     try:
-        data = Store(ref.root).read_bytes(ref.name)
+        (stamp,) = photos.stamps([ref.name])  # before: what is written later shows
+        data = photos.read_bytes(ref.name)
     except (OSError, ValueError) as problem:  # the latter of a name that none can have
         why = getattr(problem, "strerror", None) or str(problem)
         remedy = f"{ref.root}/{ref.name}: {why}; restore the file or mend the row"
         return Rejection(ref.name, "photo", "unreadable file", remedy)
-    return replace(ref, sha256=hashlib.sha256(data).hexdigest())
+    size, mtime_ns = stamp or (0, 0)
+    sha256 = hashlib.sha256(data).hexdigest()
+    return replace(ref, sha256=sha256, size=size, mtime_ns=mtime_ns)
 
 
 @dataclass
@@ -101,18 +105,6 @@ class Rectify(beam.PTransform):
         return photos | self.bench.attempt(rectified, "rectify")
 
 
-@dataclass
-class Inpaint(beam.PTransform):
-    """Rectified facades in; facades out whose finished elevations are in the store."""
-
-    bench: Bench
-
-    def expand(self, facades: pvalue.PCollection) -> Any:
-        """Wire the stage."""
-        network = self.bench.network("inpaint")
-        return facades | self.bench.attempt(inpainted, "inpaint", network)
-
-
 def segmented(ref: PhotoRef, bench: Bench, network: Once) -> PhotoRef | Rejection:
     """Keep what the network finds in a photo."""
 
@@ -126,37 +118,58 @@ def segmented(ref: PhotoRef, bench: Bench, network: Once) -> PhotoRef | Rejectio
         return tables.table(Instance, quantise.instances(found))
 
     path = bench.versions.path("segment", bench.versions.segment_key(ref.sha256))
-    return unless(bench.keep(path, make), ref)
+    declined = bench.keep(path, make)
+    if ref.outline and declined is not None and declined.stage == "segment":
+        return ref  # a front that is drawn need not be found
+    return unless(declined, ref)
 
 
 def matted(ref: PhotoRef, bench: Bench) -> PhotoRef | Rejection:
     """Keep the facades and occluders of a photo, with their soft masks."""
 
     def make() -> pa.Table | Rejection:
-        picture, versions = needed(bench.decoded(ref)), bench.versions
-        path = versions.path("segment", versions.segment_key(ref.sha256))
-        again = partial(segmented, ref, bench, bench.network("segment"))
-        found = tables.records(Instance, bench.read(path, again))
-        result = matte.matte(picture, tuple(found))
+        picture = needed(bench.decoded(ref))
+        result = steps.front(picture, instances(ref, bench), drawn(ref))
         return (
             result if isinstance(result, Rejection) else artifacts.matted_table(result)
         )
 
-    path = bench.versions.path("matte", bench.versions.matte_key(ref.sha256))
+    key = bench.versions.matte_key(ref.sha256, ref.outline)
+    path = bench.versions.path("matte", key)
     return unless(bench.keep(path, make), ref)
+
+
+def instances(ref: PhotoRef, bench: Bench) -> tuple[Instance, ...]:
+    """Read what the network found in a photo: nothing where it declined."""
+    path = bench.versions.path("segment", bench.versions.segment_key(ref.sha256))
+    again = partial(segmented, ref, bench, bench.network("segment"))
+    if ref.outline and isinstance(bench.store.verdict(path), Rejection):
+        return ()
+    return tuple(tables.records(Instance, bench.read(path, again)))
+
+
+def drawn(ref: PhotoRef) -> Drawn:
+    """Give what somebody drew on a photo."""
+    return Drawn(points(ref.outline), points(ref.quad))
+
+
+def points(told: str) -> np.ndarray | None:
+    """Read points as they are written: x,y x,y ..."""
+    pairs = [one.split(",") for one in told.split()]
+    return np.array(pairs, np.float64) if pairs else None
 
 
 def rectified(ref: PhotoRef, bench: Bench) -> list[FacadeRef | Rejection]:
     """Keep the elevations of a photo, and fan out to its facades."""
     versions = bench.versions
-    path = versions.path("rectify", versions.rectify_key(ref.sha256))
-    before = versions.path("matte", versions.matte_key(ref.sha256))
+    path = versions.path("rectify", versions.rectify_key(ref.sha256, *ref.drawn))
+    before = versions.path("matte", versions.matte_key(ref.sha256, ref.outline))
 
     def make() -> pa.Table | Rejection:
         picture = needed(bench.decoded(ref))
         again = partial(matted, ref, bench)
         result = artifacts.matted_from(bench.read(before, again))
-        views = tuple(map(rounded, rectify.rectify(picture, result)))
+        views = steps.straightened(picture, result, drawn(ref))
         return artifacts.rectified_table(picture, result, views)
 
     rejection = bench.keep(path, make)
@@ -168,21 +181,6 @@ def rectified(ref: PhotoRef, bench: Bench) -> list[FacadeRef | Rejection]:
         named(one, ref.name) if isinstance(one, Rejection) else FacadeRef(ref, *one)
         for one in outcomes
     ]
-
-
-def inpainted(ref: FacadeRef, bench: Bench, network: Once) -> FacadeRef | Rejection:
-    """Keep one finished elevation."""
-    versions, sha256 = bench.versions, ref.photo.sha256
-
-    def make() -> pa.Table | Rejection:
-        before = versions.path("rectify", versions.rectify_key(sha256))
-        found = bench.read(before, partial(rectified, ref.photo, bench))
-        view = artifacts.elevation_from(found, ref.seen.facade)
-        return tables.table(Elevation, [inpaint.inpaint(view, network)])
-
-    path = versions.path("inpaint", versions.inpaint_key(sha256, ref.seen.facade))
-    bench.keep(path, make)
-    return ref
 
 
 @dataclass

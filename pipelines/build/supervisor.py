@@ -18,10 +18,12 @@ import sys
 import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection, Pipe, wait
+from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
 ATTEMPTS: Final = 2  # what another process did may kill one
 GIBIBYTE: Final = 1 << 30
+KIBIBYTES_A_MEGABYTE: Final = 1e6 / 1024
 SPENT, FRESH = b"spent", b"fresh"  # whether a child may be asked again
 PDEATHSIG: Final = 1  # of prctl: the signal that a child gets when its parent dies
 
@@ -41,6 +43,8 @@ class Done(NamedTuple):
     result: Any
     cpu_s: float
     healed: int  # damaged artifacts that were made again
+    skipped: bool = False  # all was there already
+    peak_mb: float = 0.0  # of the memory of the process that did it, so far
 
 
 class Failed(NamedTuple):
@@ -181,7 +185,7 @@ def done(function: Function, element: Any, limits: Limits) -> Done | Failed:
     began = time.thread_time()
     try:
         result = function(element)
-        return Done(result, time.thread_time() - began, healed(function))
+        return Done(result, time.thread_time() - began, *noticed(function), peak_mb())
     except MemoryError:
         told = f"MemoryError: it asked for more than {limits.gigabytes:g} GB"
         return Failed(told, fatal=False)
@@ -193,12 +197,22 @@ def done(function: Function, element: Any, limits: Limits) -> Done | Failed:
         return Failed(str(problem), fatal=True)
 
 
-def healed(function: Function) -> int:
-    """Ask a function how many artifacts it made again, and forget it."""
-    damaged = getattr(function, "damaged", [])
-    count = len(damaged)
-    damaged.clear()
-    return count
+def noticed(function: Function) -> tuple[int, bool]:
+    """Ask a function how many artifacts it made again, and whether it made none."""
+    ask = getattr(function, "noticed", None)
+    return ask() if ask is not None else (0, False)
+
+
+def peak_mb() -> float:
+    """Tell the most memory that this process has held; 0 where nothing tells it.
+
+    `ru_maxrss` would not do: a child begins with its parent's.
+    """
+    with contextlib.suppress(OSError), Path("/proc/self/status").open() as told:
+        for line in told:
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / KIBIBYTES_A_MEGABYTE
+    return 0.0
 
 
 def main() -> None:

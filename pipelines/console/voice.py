@@ -16,6 +16,7 @@ if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.index import Indexed
 
 MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
+MOST_LETTERS: Final = 2000  # of a line to people, as ten thousand hide the others
 MOST_NAMES: Final = 8  # of those that were rejected alike
 GRAVE: Final = frozenset(("homeless", "held"))  # which the exit code tells, too
 
@@ -40,13 +41,23 @@ class Voice:
             if self.machine:
                 print(json.dumps({"event": event, **facts}), flush=True)  # noqa: T201
             else:
-                self.console.print(harmless(text), markup=False, highlight=False)
+                self.console.print(
+                    harmless(shortened(text)), markup=False, highlight=False
+                )
         except (OSError, SystemExit) as problem:  # the console exits on a closed pipe
             self.lost = True
             stream = sys.stdout if self.machine else self.console.file
             why = unheard(stream, problem)
             if self.machine:
                 fail(f"standard output: {why}; the work goes on, but untold")
+
+
+def shortened(text: str) -> str:
+    """Leave out the middle of what is too long: names come first, remedies last."""
+    if len(text) <= MOST_LETTERS:
+        return text
+    half = MOST_LETTERS // 2
+    return f"{text[:half]} [...] {text[-half:]}"
 
 
 def told_rejections(rejections: Iterable[Mapping[str, Any]], voice: Voice) -> None:
@@ -113,6 +124,12 @@ def indexed(made: "Indexed", city: str, voice: Voice) -> None:
     facts = ("key", "reason", "detail")
     named = [{name: getattr(r, name) for name in facts} for r in made.rejections]
     told_rejections(named, voice)
+    if made.boards or len(made.witnesses) > 1:
+        said = ", ".join(f"{count} {one}" for one, count in made.witnesses.items())
+        words = (
+            f"by name, list and {made.boards} boards: {said}: {city}/readings.parquet"
+        )
+        voice.say("witnesses", words, boards=made.boards, **made.witnesses)
     voice.say(
         "done",
         f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "

@@ -9,12 +9,13 @@ from pipelines.store.aside import Aside
 from pipelines.store.lock import Busy, busy, held
 from pipelines.store.packing import pack
 from pipelines.store.seal import Damaged
+from pipelines.store.shelf import Shelf
 from pipelines.store.store import (
     SECRETIVE,
     Store,
     Unstored,
     durable,
-    parquet_bytes,
+    key_of,
     secretive,
     textual,
 )
@@ -24,13 +25,14 @@ __all__ = [
     "Aside",
     "Busy",
     "Damaged",
+    "Shelf",
     "Store",
     "Unstored",
     "busy",
     "durable",
     "held",
+    "key_of",
     "pack",
-    "parquet_bytes",
     "secretive",
     "textual",
 ]

@@ -1,7 +1,8 @@
 """What no kept run refers to is dropped: artifacts, and runs that nobody asked to keep.
 
 A run refers to the artifacts of every photo that it read, at the versions it ran with,
-to the elevations that its buildings wear, and to its models.
+to the elevations that its buildings wear, to what neighbours lent them, to what came of
+comparing its blocks' facades, and to its models.
 """
 
 import contextlib
@@ -19,7 +20,14 @@ from pipelines.store.store import ARTIFACTS, Store
 from pipelines.store.versions import Versions
 
 CURRENT: Final = "CURRENT"
-NAMED: Final = (("buildings", "elevations"), ("blocks", "model"))
+DRAWN: Final = ("outline", "quad")  # columns of a run's photos
+# A stage whose artifacts these are, if runs of older cities had none; table; column.
+NAMED: Final = (
+    ("", "buildings", "elevations"),
+    ("", "blocks", "model"),
+    ("borrow", "borrowed", "borrowed"),
+    ("compare", "blocks", "compared"),
+)
 
 
 class Unknown(ValueError):  # noqa: N818 - it reads as what it is about
@@ -61,9 +69,17 @@ def drop_unkept(store: Store, *, keep: int = 1, dry: bool = False) -> Dropped:
         for pack in touched:
             repack(store, folder, pack, without=spare)
     for run in () if dry else others:
-        for name in store.names(f"runs/{run}"):
-            store.remove(f"runs/{run}/{name}")
+        drop_run(store, run)
     return Dropped(kept, others, artifacts, packs)
+
+
+def drop_run(store: Store, run: str) -> None:
+    """Drop a run's folder, and in it that of a part which was at work."""
+    for folder in (f"runs/{run}/{runs.REDONE}", f"runs/{run}"):
+        for name in store.names(folder):
+            if name != runs.REDONE:
+                store.remove(f"{folder}/{name}")
+        store.drop_folder(folder)
 
 
 def chosen(store: Store, keep: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -98,12 +114,11 @@ def referred(store: Store, run: str) -> Iterator[tuple[str, str]]:
     """
     try:
         versions = Versions(**record(store, run)["versions"])
-        for (sha256,) in cells(store, run, "photos", "sha256"):
-            for stage in ("segment", "matte", "rectify", "thumbnail"):
-                key = getattr(versions, f"{stage}_key")(sha256)
-                yield versions.folder(stage), key
-        for name, column in NAMED:
-            for (cell,) in cells(store, run, name, column):
+        for one in photos(store, run):
+            yield from of_photo(versions, **one)
+        for stage, name, column in NAMED:
+            told = not stage or getattr(versions, stage)
+            for (cell,) in cells(store, run, name, column) if told else ():
                 for path in [cell] if isinstance(cell, str) else cell:
                     found = ARTIFACT.fullmatch(path)
                     if found:
@@ -113,6 +128,25 @@ def referred(store: Store, run: str) -> Iterator[tuple[str, str]]:
             f"{store.root}: run {run} does not tell what it refers to ({problem!r}): "
             "build once more, or keep fewer runs"
         ) from problem
+
+
+def photos(store: Store, run: str) -> Iterator[dict[str, str]]:
+    """Read what a run's photos were made of; earlier runs knew of no drawing."""
+    for table in runs.each_part(store, run, "photos", ["sha256", *DRAWN]):
+        for row in table.to_pylist():
+            drawn = {name: row.get(name) or "" for name in DRAWN}
+            yield {"sha256": row["sha256"]} | drawn
+
+
+def of_photo(
+    versions: Versions, *, sha256: str, outline: str, quad: str
+) -> Iterator[tuple[str, str]]:
+    """List the artifacts of one photo."""
+    yield versions.folder("segment"), versions.segment_key(sha256)
+    yield versions.folder("placard"), versions.placard_key(sha256)
+    yield versions.folder("thumbnail"), versions.thumbnail_key(sha256)
+    yield versions.folder("matte"), versions.matte_key(sha256, outline)
+    yield versions.folder("rectify"), versions.rectify_key(sha256, outline, quad)
 
 
 def cells(store: Store, run: str, name: str, column: str) -> Iterator[tuple[Any]]:

@@ -4,9 +4,10 @@
     CITY/runs/<run id>/run.json
 
 The run's id is a hash of what was asked for, so a run that is repeated writes the same
-tables to the same place. Clock times are in run.json alone. The table of a large
-archive is written in parts, as `photos-03-of-37.parquet`, none of which is more than
-one process holds; what is told of one photo or block stands in one part.
+tables to the same place. Clock times are in run.json and the metrics.prom made of it
+alone. The table of a large archive is written in parts, as
+`photos-03-of-37.parquet`, none of which is more than one process holds; what is told of
+one photo or block stands in one part.
 """
 
 import hashlib
@@ -18,6 +19,8 @@ from typing import Any, Final
 import pyarrow as pa
 
 from nostalgin_core.records import Rejection, Seen, Standpoint
+from nostalgin_core.views import Claim
+from pipelines.models import READER
 from pipelines.store import tables
 from pipelines.store.store import Store, key_of
 from pipelines.store.versions import Versions
@@ -28,14 +31,22 @@ def columns(**kinds: pa.DataType) -> pa.Schema:
     return pa.schema([pa.field(name, kind) for name, kind in kinds.items()])
 
 
+REDONE: Final = "redone"  # in a run's folder: tables of a part that is at work
 TEXT, NUMBER, COUNT = pa.string(), pa.float64(), pa.int64()
 NUMBERS: Final = pa.list_(pa.float64())
 Part = tuple[int, int]  # which, from 0, of how many
 PART: Final = 20_000  # rows of a manifest for each part of a run's tables
 
 PHOTOS: Final = columns(
-    name=TEXT, root=TEXT, key=TEXT, sha256=TEXT, blocks=pa.list_(TEXT)
+    name=TEXT,
+    root=TEXT,
+    key=TEXT,
+    sha256=TEXT,
+    blocks=pa.list_(TEXT),
+    outline=TEXT,  # of its front, if somebody drew it; its artifacts' keys have it
+    quad=TEXT,  # the same
 )
+STAMPS: Final = columns(name=TEXT, root=TEXT, size=COUNT, mtime_ns=COUNT)
 FACADES: Final = pa.schema(
     [
         *columns(name=TEXT, elevations=TEXT),
@@ -79,6 +90,19 @@ BLOCKS: Final = columns(
     assumed=COUNT,
     credit=TEXT,
     record=TEXT,  # what the viewer tells of it, as JSON
+    compared=pa.list_(TEXT),  # the artifact of `compare`; none: nothing was compared
+)
+CLAIMS: Final = pa.schema([*columns(block=TEXT, name=TEXT), *tables.schema(Claim)])
+BORROWED: Final = columns(
+    front_id=TEXT,
+    name=TEXT,  # of the photo that is worn
+    facade=COUNT,
+    lenders=pa.list_(TEXT),  # names of the other photos that are claimed to show it
+    photos=pa.list_(TEXT),  # keys of those that lent
+    unseen=NUMBER,  # share of the front that its own photo does not show
+    left=NUMBER,  # that no photo shows
+    fits=TEXT,  # how each lender fits, as JSON
+    borrowed=pa.list_(TEXT),  # the artifact; none where nobody else shows it
 )
 PLACES: Final = columns(
     block=TEXT,
@@ -95,9 +119,12 @@ PLACES: Final = columns(
 REJECTIONS: Final = tables.schema(Rejection)
 SCHEMAS: Final = {
     "photos": PHOTOS,
+    "stamps": STAMPS,  # by which a file is known to be unchanged, without reading it
     "facades": FACADES,
     "buildings": BUILDINGS,
     "blocks": BLOCKS,
+    "claims": CLAIMS,  # which front each facade of each photo shows
+    "borrowed": BORROWED,  # what neighbours lent to fronts
     "places": PLACES,  # of a run that was published
     "rejections": REJECTIONS,
 }
@@ -105,7 +132,8 @@ SCHEMAS: Final = {
 
 def run_id(manifest_sha256: str, versions: Versions, shard: str) -> str:
     """Name a run by what was asked for."""
-    return key_of(manifest_sha256, json.dumps(vars(versions)), shard)[:12]
+    built = {stage: one for stage, one in vars(versions).items() if stage != READER}
+    return key_of(manifest_sha256, json.dumps(built), shard)[:12]
 
 
 def parts_of(rows: int) -> int:
@@ -139,6 +167,12 @@ def write_table(
     store.write_table(table_path(run, name, which), table)
 
 
+def part_names(store: Store, run: str, name: str) -> list[str]:
+    """Name the files of a run's table."""
+    ours = re.compile(rf"{name}(-\d+-of-\d+)?\.parquet")
+    return [one for one in store.names(f"runs/{run}") if ours.fullmatch(one)]
+
+
 def each_part(
     store: Store, run: str, name: str, columns: Sequence[str] | None = None
 ) -> Iterator[pa.Table]:
@@ -148,9 +182,7 @@ def each_part(
         FileNotFoundError: if there is none.
         Damaged: if a part is not what was written.
     """
-    ours = re.compile(rf"{name}(-\d+-of-\d+)?\.parquet")
-    named = [one for one in store.names(f"runs/{run}") if ours.fullmatch(one)]
-    for one in named or [f"{name}.parquet"]:
+    for one in part_names(store, run, name) or [f"{name}.parquet"]:
         yield store.read_table(f"runs/{run}/{one}", columns)
 
 

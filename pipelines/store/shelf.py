@@ -103,6 +103,16 @@ class Shelf:
         """Tell whether an artifact is there."""
         return key in self.loose or self.find(key) is not None
 
+    def lacks(self, keys: Sequence[str]) -> np.ndarray:
+        """Tell of each of many keys whether its artifact is missing."""
+        asked = np.array(keys, "S40")
+        if not len(asked):
+            return np.zeros(0, bool)
+        lacking = ~np.isin(asked, self.keys)
+        for at in np.flatnonzero(lacking).tolist() if self.loose else ():
+            lacking[at] = keys[at] not in self.loose
+        return lacking
+
     def __iter__(self) -> Iterator[str]:
         """Name all artifacts once."""
         yield from self.loose

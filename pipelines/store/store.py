@@ -13,7 +13,6 @@ import contextlib
 import errno
 import functools
 import hashlib
-import io
 import os
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,12 +29,7 @@ from pipelines import bounded
 from pipelines.store import seal, tables
 from pipelines.store.disk import SECRETIVE, durable, reached, secretive, textual
 from pipelines.store.seal import Damaged
-from pipelines.store.shelf import (
-    ARTIFACT,
-    Place,
-    Shelf,
-    shelf,
-)
+from pipelines.store.shelf import ARTIFACT, Place, Shelf, shelf
 
 ARTIFACTS: Final = "artifacts"
 VERDICT: Final = b"nostalgin.verdict"
@@ -54,15 +48,6 @@ def key_of(*parts: str) -> str:
     """Hash parts into a key; ("ab", "c") and ("a", "bc") differ."""
     joined = "\0".join(parts).encode()
     return hashlib.sha256(joined).hexdigest()[:40]
-
-
-def parquet_bytes(table: pa.Table) -> bytes:
-    """Encode a table; the same rows give the same bytes."""
-    sink = io.BytesIO()
-    pq.write_table(
-        table, sink, compression="zstd", use_dictionary=False, write_statistics=False
-    )
-    return sink.getvalue()
 
 
 @dataclass(frozen=True)
@@ -95,6 +80,21 @@ class Store:
         """Tell whether a file is there."""
         system, root = self._open()
         return system.get_file_info(f"{root}/{name}").type == pafs.FileType.File
+
+    def stamps(self, names: Sequence[str]) -> list[tuple[int, int] | None]:
+        """Tell the sizes of files and when they were changed, in nanoseconds.
+
+        None of what is no file, or has a name that none can have.
+        """
+        system, root = self._open()
+        paths = [f"{root}/{name}" for name in names]
+        try:
+            told = system.get_file_info(paths)
+        except (OSError, ValueError):  # one spoils all: ask for each by itself
+            if len(names) == 1:
+                return [None]
+            return [stamp for name in names for stamp in self.stamps([name])]
+        return [(one.size, one.mtime_ns) if one.is_file else None for one in told]
 
     def read_bytes(self, name: str, most: int = bounded.PHOTO_BYTES) -> bytes:
         """Read a whole file of at most so many bytes.

@@ -13,45 +13,55 @@ import dataclasses
 import inspect
 import json
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from importlib.metadata import version as release
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final, Self
 
 from nostalgin_core import (
     block,
+    borrow,
     inpaint,
     matte,
     model,
     photo,
+    placard,
     rectify,
     segment,
     storeys,
+    views,
 )
-from pipelines.models import NETWORKS, Models
+from pipelines.models import NETWORKS, PRINT, READER, Models
 from pipelines.store.shelf import PACKED
 from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 6,
+    "segment": 7,
     "matte": 7,
     "rectify": 7,
+    "compare": 1,
     "inpaint": 6,
-    "block": 5,
+    "block": 6,
     "thumbnail": 2,
+    "borrow": 1,
+    "placard": 1,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
     "segment": (photo, segment),
     "matte": (matte,),
     "rectify": (rectify, storeys),
+    "compare": (views,),
     "inpaint": (inpaint,),
     "block": (block, model),
     "thumbnail": (photo,),
+    "borrow": (borrow,),
+    "placard": (placard,),
 }
 CORE: Final = "nostalgin_core."
-COUNTED: Final = ("segment", "matte", "rectify", "inpaint", "block")
+COUNTED: Final = ("segment", "matte", "rectify", "borrow", "inpaint", "block")
 
 
 def family(*modules: ModuleType) -> list[ModuleType]:
@@ -124,6 +134,7 @@ def version(stage: str, models: Models) -> str:
         Unlocked: if the stage's network has no lock.
     """
     network = models.sha256(stage) if stage in NETWORKS else ""
+    network = release(PRINT) if stage == READER else network
     return f"{CODE[stage]}-{key_of(PARAMETERS[stage], network)[:8]}"
 
 
@@ -137,6 +148,10 @@ class Versions:
     inpaint: str
     block: str
     thumbnail: str
+    borrow: str = ""  # runs of older cities had none
+    # No block hangs on it, and a run's record of earlier days names none.
+    placard: str = field(default="", compare=False)
+    compare: str = ""  # of a run before there was one
 
     @classmethod
     def present(cls, models: Models) -> Self:
@@ -167,17 +182,35 @@ class Versions:
         """Key a photo's small picture."""
         return self.key("thumbnail", sha256)
 
-    def matte_key(self, sha256: str) -> str:
-        """Key the matted facades of a photo."""
-        return self.key("matte", self.segment_key(sha256))
+    def placard_key(self, sha256: str) -> str:
+        """Key what is read of a photo's board, which is sought where segments are."""
+        return self.key("placard", self.segment_key(sha256))
 
-    def rectify_key(self, sha256: str) -> str:
-        """Key the elevations of a photo."""
-        return self.key("rectify", self.matte_key(sha256))
+    def matte_key(self, sha256: str, outline: str = "") -> str:
+        """Key the matted facades of a photo, one of them by its outline if drawn."""
+        drawn = [outline] if outline else []
+        return self.key("matte", self.segment_key(sha256), *drawn)
 
-    def inpaint_key(self, sha256: str, facade: int) -> str:
+    def rectify_key(self, sha256: str, outline: str = "", quad: str = "") -> str:
+        """Key the elevations of a photo, one of them by its quad if that is drawn."""
+        drawn = [quad] if quad else []
+        return self.key("rectify", self.matte_key(sha256, outline), *drawn)
+
+    def borrow_key(self, elevations: Iterable[tuple[str, int]]) -> str:
+        """Key an elevation and what lends to it: keys of `rectify`, and facades."""
+        parts = (str(part) for one in elevations for part in one)
+        return self.key("borrow", *parts)
+
+    def inpaint_key(
+        self, sha256: str, facade: int, outline: str = "", quad: str = ""
+    ) -> str:
         """Key one finished elevation."""
-        return self.key("inpaint", self.rectify_key(sha256), str(facade))
+        rectified = self.rectify_key(sha256, outline, quad)
+        return self.key("inpaint", rectified, str(facade))
+
+    def lent_key(self, borrowed: str) -> str:
+        """Key a finished elevation to which others lent."""
+        return self.key("inpaint", borrowed)
 
     def counts(self, root: str) -> dict[str, int]:
         """Count the artifacts of each stage in a city folder on this machine."""

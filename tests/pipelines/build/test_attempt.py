@@ -4,6 +4,7 @@ from apache_beam.testing.util import assert_that, equal_to
 
 from nostalgin_core.records import Rejection
 from pipelines.build.attempt import Attempt, subject
+from pipelines.build.took import edge
 
 
 def halve(n: int) -> int | Rejection:
@@ -51,8 +52,9 @@ def test_every_element_is_counted_once_and_timed() -> None:
     metrics = result.metrics().query()
     counted = {m.key.metric.name: m.committed for m in metrics["counters"]}
     assert (counted["made"], counted["rejected"]) == (2, 1)
-    (timed,) = metrics["distributions"]
-    assert timed.committed.count == 3
+    told = {m.key.metric.name: m.committed for m in metrics["distributions"]}
+    assert told["milliseconds"].count == 3
+    assert sum(n for name, n in counted.items() if edge(name) is not None) == 3
 
 
 @pytest.mark.parametrize("element", [("993", 1), "993", (("993", 2), 1)])

@@ -27,7 +27,7 @@ LIMITS = Limits(seconds=20, gigabytes=1.5)
 def eat(_: object) -> None:
     kept = []
     while True:
-        kept.append(np.ones(1 << 27))
+        kept.append(np.empty(1 << 27))  # what is asked for counts, used or not
 
 
 def unstored(_: object) -> None:
@@ -88,6 +88,19 @@ def test_what_kills_its_process_twice_is_put_aside_and_others_go_on(
 def test_what_never_ends_is_ended(store: Store) -> None:
     why = done(isolation(store, Limits(0.2, 1.5)), "sleep")
     assert "more than 0.2 s" in why.detail
+
+
+def nap(group: Any) -> str:
+    """Sleep for as long as a group is allowed to, and an element of its own is not."""
+    name, parts = group
+    time.sleep(0.1 * len(parts["facades"]))
+    return name
+
+
+def test_a_group_may_take_longer_the_more_members_it_has(store: Store) -> None:
+    limits, act = Limits(3.0, 1.5), pickle.dumps(nap)
+    large = ("large", {"task": ["block"], "facades": ["one"] * 40})
+    assert done(isolation(store, limits), large, act) == "large"
 
 
 def test_memory_has_a_limit_and_the_next_finds_it_free_again(store: Store) -> None:

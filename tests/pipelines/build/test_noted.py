@@ -1,7 +1,13 @@
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
-from pipelines.build.noted import note
+from apache_beam.metrics.cells import DistributionData, DistributionResult
+from apache_beam.metrics.execution import MetricKey
+from apache_beam.metrics.metricbase import MetricName
+
+from pipelines.build.noted import note, stages
 from pipelines.build.options import options
 from pipelines.models import Models
 from pipelines.store import Store
@@ -20,3 +26,15 @@ def test_a_run_s_record_tells_its_versions_and_no_secret(tmp_path: Path) -> None
     assert "hush" not in told
     assert json.loads(told)["options"]["job_name"] == "ours"
     assert Versions(**json.loads(told)["versions"]) == versions
+
+
+def test_a_distribution_that_nobody_updated_is_no_failure() -> None:
+    name = MetricName("segment", "worker_mb")
+    empty = DistributionResult(DistributionData(0, 0, None, None))
+    for result in (empty, None):
+        key = MetricKey("Segment", name)
+        told = SimpleNamespace(key=key, result=result)
+        found = {"counters": [], "distributions": [told]}
+        metrics = SimpleNamespace(query=lambda found=found: found)
+        ran: Any = SimpleNamespace(metrics=lambda metrics=metrics: metrics)
+        assert stages(ran)["segment"]["worker_mb"] == 0

@@ -39,6 +39,18 @@ def test_nothing_goes_while_every_run_is_kept(other: Path) -> None:
     assert tree(other) == before
 
 
+def test_after_one_build_nothing_goes_and_the_next_makes_nothing(
+    tmp_path: Path,
+) -> None:
+    other = painted.write_city(tmp_path)
+    built(other, HERE)
+    assert artifacts(other, "compare")
+    made = {path: path.stat().st_mtime_ns for path in artifacts(other, "")}
+    assert drop_unkept(Store(str(other)), keep=0).artifacts == 0
+    built(other, HERE)
+    assert {p: p.stat().st_mtime_ns for p in artifacts(other, "")} == made
+
+
 def test_a_dry_run_drops_nothing(other: Path) -> None:
     before = tree(other)
     assert drop_unkept(Store(str(other)), dry=True).artifacts > 0

@@ -31,7 +31,7 @@ ELEVATION = Elevation(
     facade=1,
     image=GRAY,
     alpha=SOFT,
-    evidence=GRAY % 7,
+    evidence=GRAY % 8,
     quad=CORNERS,
     photo_from_elevation=RNG.normal(size=(3, 3)),
     vanishing_points=RNG.normal(size=(2, 3)),

@@ -1,0 +1,189 @@
+"""The boards of photographs, looked at by a pipeline that fills the city's own store.
+
+    names --Reshuffle--Read--Placard--> readings/heard.parquet (then dropped)
+
+`index` asks for it before there is a manifest. What the network finds in a photo is
+kept where `build` looks for it, so that nothing is segmented twice; what was read of a
+board is an artifact too, whatever list it is joined with.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final
+
+import apache_beam as beam
+import cv2
+import pyarrow as pa
+from apache_beam import pvalue
+from apache_beam.options.pipeline_options import PipelineOptions
+
+from nostalgin_core import placard
+from nostalgin_core.records import Instance, Rejection
+from pipelines.build.bench import Bench
+from pipelines.build.embedded import in_process
+from pipelines.build.isolation import POOL
+from pipelines.build.launched import launched
+from pipelines.build.options import CityOptions
+from pipelines.build.prepared import bench_of
+from pipelines.build.stages import Read, needed, segmented, unless
+from pipelines.index import Heard
+from pipelines.index.plan import PhotoRef
+from pipelines.models import READER, Once, one_thread
+from pipelines.store import Damaged, Store, tables
+
+HEARD: Final = "readings/heard.parquet"
+TEXT = pa.string()
+ARTIFACT: Final = pa.schema(
+    [
+        pa.field("found", TEXT),  # how the board was found
+        pa.field("box", pa.list_(pa.int64())),
+        pa.field("looks", pa.list_(pa.list_(pa.list_(TEXT)))),  # looks, lines, pieces
+        pa.field("crop", pa.binary()),  # PNG
+    ]
+)
+TOLD: Final = pa.schema(
+    [pa.field(name, TEXT) for name in ("name", "sha256", "reason", "detail")]
+)
+
+
+@dataclass
+class Placard(beam.PTransform):
+    """Photos in; photos out whose boards were looked at."""
+
+    bench: Bench
+
+    def expand(self, photos: pvalue.PCollection) -> Any:
+        """Wire the stage."""
+        tools = self.bench.network("segment"), self.bench.network(READER)
+        return photos | self.bench.attempt(sighted, READER, *tools)
+
+
+def sighted(
+    ref: PhotoRef, bench: Bench, network: Once, reader: Once
+) -> PhotoRef | Rejection:
+    """Keep what is read of a photo's board; one without facades may have a board."""
+    versions = bench.versions
+
+    def make() -> pa.Table | Rejection:
+        picture = bench.decoded(ref)
+        if isinstance(picture, Rejection):
+            return picture
+        path = versions.path("segment", versions.segment_key(ref.sha256))
+        again = partial(segmented, ref, bench, network)
+        found: list[Instance] = []
+        if not isinstance(again(), Rejection):
+            found = tables.records(Instance, bench.read(path, again))
+        sight = placard.looked(needed(picture), placard.board(found), reader)
+        return table(sight, placard.crop(picture, sight.box))
+
+    return unless(bench.keep(path_of(ref.sha256, bench), make), ref)
+
+
+def path_of(sha256: str, bench: Bench) -> str:
+    """Name the artifact of a photo's board."""
+    return bench.versions.path(READER, bench.versions.placard_key(sha256))
+
+
+def table(sight: placard.Sight, crop: Any) -> pa.Table:
+    """Write what is seen of a board, and its picture."""
+    png = cv2.imencode(".png", crop)[1].tobytes() if crop.size else b""
+    looks = [[list(line) for line in look.lines] for look in sight.looks]
+    row = {
+        "found": sight.found,
+        "box": list(sight.box or ()),
+        "looks": looks,
+        "crop": png,
+    }
+    return pa.Table.from_pylist([row], ARTIFACT)
+
+
+def told(one: PhotoRef | Rejection) -> dict[str, str]:
+    """Tell what came of a photo."""
+    if isinstance(one, Rejection):
+        why = {"reason": one.reason, "detail": one.detail}
+        return {"name": one.key, "sha256": ""} | why
+    return {"name": one.name, "sha256": one.sha256, "reason": "", "detail": ""}
+
+
+@dataclass(frozen=True)
+class Wire:
+    """The pipeline over some photographs of a folder."""
+
+    bench: Bench
+    root: str
+    names: tuple[str, ...]
+
+    def __call__(self, pipeline: beam.Pipeline) -> None:
+        """Wire the whole way from names to what was heard."""
+        photos = (
+            pipeline
+            | "Names" >> beam.Create(self.names)
+            | "Photos" >> beam.Map(self._ref)
+        )
+        read = photos | Read()
+        seen = read.made | "Spread" >> beam.Reshuffle() | Placard(self.bench)
+        _ = (
+            (seen.made, seen.rejected, read.rejected)
+            | beam.Flatten()
+            | "Told" >> beam.Map(told)
+            | "Alone" >> beam.WithKeys("")
+            | "Gather" >> beam.GroupByKey()
+            | "Write" >> beam.MapTuple(self._write)
+        )
+
+    def _ref(self, name: str) -> PhotoRef:
+        return PhotoRef(self.root, name, ())
+
+    def _write(self, _: str, rows: Iterable[dict[str, str]]) -> None:
+        ordered = sorted(rows, key=lambda row: row["name"])
+        self.bench.store.write_table(HEARD, pa.Table.from_pylist(ordered, TOLD))
+
+
+def boards(
+    options: PipelineOptions, root: str, names: Sequence[str]
+) -> Mapping[str, Heard]:
+    """Look at the boards of photographs below a folder, by name.
+
+    Raises:
+        Unlocked: if a network's file is not what its lock says.
+        Lost: if a runner lost work, or what it made could not be kept.
+        Unrun: if a cluster does not answer, or gives up.
+    """
+    one_thread()
+    ours = options.view_as(CityOptions)
+    store = Store(ours.city)
+    if in_process(options) and ours.stage_seconds:
+        POOL.fill()  # before there are threads and open files
+    bench = bench_of(ours, store)
+    launched(options, Wire(bench, root, tuple(names)), store)
+    rows = store.read_table(HEARD).to_pylist()
+    store.drop(HEARD)
+    return {row["name"]: heard(row, bench) for row in rows}
+
+
+def heard(row: Mapping[str, str], bench: Bench) -> Heard:
+    """Take what was read of one photo's board; its picture waits until it is wanted."""
+    if row["reason"]:
+        return Heard(why=f"{row['reason']}: {row['detail']}")
+    path = path_of(row["sha256"], bench)
+    try:
+        (cells,) = bench.store.read_table(path, ["found", "looks"]).to_pylist()
+    except (Damaged, FileNotFoundError):
+        bench.store.drop(path)
+        return Heard(why="what was read of its board is damaged: index once more")
+    looks = (placard.Look(tuple(map(tuple, lines))) for lines in cells["looks"])
+    return Heard(
+        key=row["sha256"][:16],
+        found=cells["found"],
+        looks=tuple(looks),
+        picture=partial(picture, bench.store, path),
+    )
+
+
+def picture(store: Store, path: str) -> bytes:
+    """Read the picture of a board; of one that is damaged there is none."""
+    try:
+        return store.read_table(path, ["crop"]).column("crop")[0].as_py() or b""
+    except (Damaged, FileNotFoundError):
+        return b""

@@ -1,0 +1,70 @@
+"""A pipeline is run to its end, by whichever runner is asked for.
+
+What ends a run is told in words: a worker that was killed, a folder that takes no more.
+"""
+
+import copy
+import re
+from collections.abc import Callable
+from typing import Final
+
+import apache_beam as beam
+from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
+from apache_beam.runners.runner import PipelineResult
+
+from pipelines.build import cluster, embedded
+from pipelines.build.report import Lost
+from pipelines.store import Store, Unstored
+
+# As a worker's traceback has it; a run's tables are written without `keep`.
+UNWRITTEN: Final = (
+    rf"{Unstored.__name__}: (.*)",
+    r"(?:OS|Permission|[A-Z]\w+Directory)Error: (.*)",
+)
+
+
+def launched(
+    options: PipelineOptions, wire: Callable[[beam.Pipeline], None], store: Store
+) -> PipelineResult:
+    """Run what `wire` adds to a pipeline to its end.
+
+    Raises:
+        Lost: if what was made could not be kept.
+        Unrun: if a cluster gave up.
+    """
+    runner = options.view_as(StandardOptions).runner
+    if runner != embedded.EMBEDDED:
+        with cluster.told(runner):
+            pipeline = beam.Pipeline(options=options)
+            wire(pipeline)
+            result = pipeline.run()
+            result.wait_until_finish()
+        return result
+    given = copy.deepcopy(options)  # which the embedded runner changes for itself
+    pipeline = beam.Pipeline(embedded.runner(given), options=given)
+    wire(pipeline)
+    try:
+        with embedded.on_loopback(), embedded.ending_with_a_worker():
+            result = pipeline.run()
+            result.wait_until_finish()
+    except embedded.WorkerLost as problem:
+        words = f"{problem}: build again, with fewer workers if memory is short"
+        raise Lost(f"{words}; what is kept already is not made twice") from problem
+    except Unstored as problem:
+        raise Lost(unstored(store, str(problem))) from problem
+    except RuntimeError as problem:  # a worker's exception reaches us as its traceback
+        lines = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
+        told = next((one for one in lines if one is not None), None)
+        if told is None:
+            raise
+        raise Lost(unstored(store, told[1])) from problem
+    return result
+
+
+def unstored(store: Store, why: str) -> str:
+    """Say that a run ended because what it made could not be kept."""
+    why = why.partition(" [while running")[0]  # which Beam adds
+    return (
+        f"{store.root} takes no more artifacts: {why}; make room or mend the folder, "
+        "and build again: what is kept already is not made twice"
+    )

@@ -1,0 +1,33 @@
+"""A process of a run loads what it needs; what it does not can still be had."""
+
+import subprocess
+import sys
+
+from tests.data import ROOT
+
+LATE = ("pymongo", "bson", "boto3", "scipy.optimize", "pydantic", "prometheus_client")
+WORKER = "import pipelines.build.blocks, apache_beam.runners.worker.sdk_worker_main"
+
+
+def loaded_after(statement: str) -> tuple[set[str], str]:
+    """Run a statement in a fresh interpreter: what came along, and what it said."""
+    known = f"import sys; {statement}; print(*(m for m in {LATE} if m in sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", known],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return set(done.stdout.split()), done.stderr
+
+
+def test_a_worker_loads_no_client_and_nothing_that_only_the_driver_needs() -> None:
+    loaded, said = loaded_after(WORKER)
+    assert loaded == set()
+    assert "bson" not in said
+
+
+def test_what_was_left_out_can_be_had_afterwards() -> None:
+    loaded, _ = loaded_after(f"{WORKER}; import pymongo, boto3, scipy.optimize")
+    assert loaded >= {"pymongo", "bson", "boto3", "scipy.optimize"}
