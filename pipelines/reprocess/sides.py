@@ -1,0 +1,100 @@
+"""The two sides of the anti-join, as numbers: eight bytes of each name, and no row.
+
+A side is a table of rows, each a photograph that may show a front of a block. What is
+remembered of a row are hashes of its photograph and block; of a block, one hash over
+its rows in their order.
+"""
+
+from array import array
+from collections.abc import Iterable, Mapping
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from pipelines.index.asked import COLUMNS, WHY, short
+from pipelines.index.roots import rooted
+
+OF_PHOTOS: Final = ("targets_px", "outlines", "quads")
+TOLD: Final = [name for name in COLUMNS.names if name not in {"number", *WHY.names}]
+
+
+class Side(NamedTuple):
+    """Rows that were asked for, or are; of a row without a photograph, zeros."""
+
+    ids: np.ndarray  # uint64: of each row, where its photograph lies and its name
+    names: np.ndarray  # uint64: its name alone, as rejections and facades have it
+    blocks: np.ndarray  # uint64
+    digests: Mapping[int, int]  # of each block: all that is told of it
+    refused: int  # rows that can't be used
+
+
+def side(
+    tables: Iterable[pa.Table], city: str, directed: Mapping[str, Mapping[str, Any]]
+) -> Side:
+    """Read rows group by group."""
+    ids, names, blocks = array("Q"), array("Q"), array("Q")
+    digests: dict[int, int] = {}
+    heights_m = directed.get("heights_m", {})
+    gaps_m, streets = (
+        directed.get("gaps_m", {}),
+        sorted(directed.get("widths_m", {}).items()),
+    )
+    of_photos = [directed.get(name, {}) for name in OF_PHOTOS]
+    refused = 0
+    for table in tables:
+        usable = table.filter(table.column("reason").is_null())
+        refused += table.num_rows - usable.num_rows
+        cells = [usable.column(name).to_pylist() for name in TOLD]
+        of = dict(zip(TOLD, cells, strict=True))
+        where = zip(of["root"], of["photo"], of["block"], of["lot"], strict=True)
+        for (root, photo, block, lot), row in zip(
+            where, zip(*cells, strict=True), strict=True
+        ):
+            ids.append(short(rooted(root, city), photo) if photo else 0)
+            names.append(short(photo) if photo else 0)
+            blocks.append(short(block))
+            more = [streets, gaps_m.get(block), heights_m.get(f"{block}-{lot}")]
+            more += [one.get(photo) for one in of_photos]
+            before = digests.get(blocks[-1], 0)
+            digests[blocks[-1]] = short(str(before), repr(row), repr(more))
+    i, n, b = (np.frombuffer(one, np.uint64) for one in (ids, names, blocks))
+    return Side(i, n, b, digests, refused)
+
+
+def differing(before: Mapping[int, int], after: Mapping[int, int]) -> np.ndarray:
+    """List the blocks of which one side tells what the other does not."""
+    found = [one for one, told in after.items() if before.get(one) != told]
+    found += [one for one in before if one not in after]
+    return np.array(sorted(found), np.uint64)
+
+
+class Groups(NamedTuple):
+    """Blocks that share photographs, and their photographs: what is redone together."""
+
+    nodes: np.ndarray  # uint64, sorted: photographs' names and blocks
+    labels: np.ndarray  # of each node: which group it is in
+
+    def of(self, nodes: np.ndarray) -> np.ndarray:
+        """Tell the groups of names and blocks that are known."""
+        at = np.searchsorted(self.nodes, nodes)
+        return self.labels[at]
+
+    def within(self, labels: np.ndarray) -> np.ndarray:
+        """List the names and blocks of some groups."""
+        return self.nodes[np.isin(self.labels, labels)]
+
+
+def groups(*sides: Side) -> Groups:
+    """Group blocks by the photographs that they share, on either side."""
+    names = np.concatenate([one.names for one in sides])
+    blocks = np.concatenate([one.blocks for one in sides])
+    nodes = np.union1d(names[names != 0], blocks)
+    shown = names != 0
+    a = np.searchsorted(nodes, names[shown])
+    b = np.searchsorted(nodes, blocks[shown])
+    edges = coo_array((np.ones(len(a), bool), (a, b)), shape=(len(nodes),) * 2)
+    labels = connected_components(edges, directed=False)[1]
+    return Groups(nodes, labels)
