@@ -4,6 +4,7 @@ import os
 import re
 import shlex
 import subprocess
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,10 @@ from apache_beam.portability.api import beam_runner_api_pb2
 from apache_beam.transforms.environments import Environment
 
 from pipelines.build.options import options, part
+from pipelines.schedule import ticks_between
 from tests.data import ROOT
 
+NOW = datetime(2026, 11, 23, tzinfo=UTC)
 DEPLOY = ROOT / "deploy"
 SBATCH = """#!/bin/sh
 printf '%s\\n' "$@" --- >> "$SAID"
@@ -62,6 +65,18 @@ def test_the_kubernetes_job_has_an_index_for_each_of_its_shards() -> None:
         assert part(words[words.index("--shard") + 1]) == (index + 1, count)
 
 
+def test_the_cron_job_and_its_command_name_the_same_times() -> None:
+    (job,) = [d for d in documents() if d["kind"] == "CronJob"]
+    spec = job["spec"]
+    (container,) = spec["jobTemplate"]["spec"]["template"]["spec"]["containers"]
+    words = container["command"]
+    assert f"--cron={spec['schedule']}" in words
+    assert f"--zone={spec['timeZone']}" in words
+    assert "--once" in words
+    assert spec["concurrencyPolicy"] == "Forbid"
+    ticks_between(spec["schedule"], spec["timeZone"], NOW, NOW)
+
+
 def test_flink_is_told_of_external_workers_and_of_retries() -> None:
     text = (DEPLOY / "kubernetes/flink.yaml").read_text()
     told = re.findall(r"--(?!runner|job|flink|port)\w+=[^\s\\\]\"]+", text)
@@ -93,10 +108,10 @@ def proto(made: PipelineOptions) -> Any:
     "document", documents(), ids=lambda one: one["metadata"]["name"]
 )
 def test_no_container_runs_as_root_or_without_limits(document: Any) -> None:
-    spec = document["spec"]
+    spec = document["spec"].get("jobTemplate", document)["spec"]
     pod = spec.get("template", spec.get("taskManager", {}).get("podTemplate"))["spec"]
     for container in pod["containers"]:
         if "nostalgin" in container["name"]:
             assert container["resources"]["limits"]["memory"]
-    if document["kind"] == "Job":
+    if document["kind"] in ("Job", "CronJob"):
         assert pod["securityContext"]["runAsNonRoot"]
