@@ -215,6 +215,23 @@ def heights_command(
     tell(report, heights.text(report), as_json=as_json)
 
 
+@app.command("city")
+def city_command(
+    data: Annotated[
+        Path, typer.Argument(help="Holds labels/, lots.json and storeys.csv.")
+    ],
+    city: Annotated[Path, typer.Argument(help="A finished city of its photographs.")],
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """Measure a city lot by lot: street, side, order, width, height; wrong ones."""
+    with measuring():
+        from pipelines.evaluate import layout
+
+        report = layout.evaluate(data, city)
+    tell(report, layout.text(report), as_json=as_json)
+
+
 @app.command("views")
 def views_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],
@@ -228,3 +245,51 @@ def views_command(
 
         report = views.evaluate(folder, block=block)
     tell(report, views.text(report), as_json=as_json)
+
+
+@app.command("fronts")
+def fronts_command(
+    data: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],
+    city: Annotated[Path, typer.Argument(help="A finished city of its photographs.")],
+    *,
+    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Measure whether facades are told to be the right fronts; wrong ones by name."""
+    with measuring():
+        from pipelines.evaluate import fronts
+
+        report = fronts.evaluate(data, city, block=block)
+    tell(report, fronts.text(report), as_json=as_json)
+
+
+@app.command("borrowed")
+def borrowed_command(
+    city: Annotated[Path, typer.Argument(help="A finished city.")],
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """Sum up what neighbours' photographs lent to each block's fronts."""
+    with measuring():
+        from pipelines.evaluate import borrowed
+
+        report = borrowed.evaluate(city)
+    tell(report, borrowed.text(report), as_json=as_json)
+
+
+@app.command("placards")
+def placards_command(
+    folder: Annotated[Path, typer.Argument(help="Holds photos/ and labels/.")],
+    city: Annotated[Path, typer.Argument(help="A folder to index the photographs in.")],
+    *,
+    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    models: ModelsFolder = None,
+    as_json: AsJson = False,
+) -> None:
+    """Measure whether boards alone lead to the right lots, among ten times as many."""
+    with measuring():
+        from pipelines.evaluate import placards
+
+        told = str(models or "")
+        report = placards.evaluate(folder, city, models=told, block=block)
+    tell(report, placards.text(report), as_json=as_json)

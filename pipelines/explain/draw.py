@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from nostalgin_core import evidence
+from nostalgin_core import rests
 from nostalgin_core.arrays import Alpha, Corners, EvidenceMap, Gray, Lines, Mask
 
 Colour = UInt8[np.ndarray, "h w 3"]  # blue, green, red, as OpenCV writes them
@@ -79,6 +79,6 @@ def stroked(picture: Colour, lines: Lines, colour: tuple[int, int, int]) -> Colo
 def evidence_colours(codes: EvidenceMap) -> Colour:
     """Paint an evidence map by code, in the tints that a model's files bear."""
     palette = np.zeros((256, 3), np.uint8)
-    for code, tint in evidence.TINTS.items():
+    for code, tint in rests.TINTS.items():
         palette[code] = tint[::-1]
     return palette[codes]
