@@ -4,6 +4,7 @@
 # make fuzz   thousands of damaged bytes for every reader; some minutes
 # make audit  known holes in what this is built on; it asks a service elsewhere
 # make prism  Beam's portable runner, built by Go from its module proxy; two minutes
+# make airflow  Airflow in an environment of its own, for the test of its DAG
 # make bench  benchmarks, as ratios against named baselines
 
 PYTHON ?= python3
@@ -19,8 +20,9 @@ EXAMPLES ?= 2000
 GO ?= go
 # As pyproject.toml has it.
 BEAM := 2.77.0
+AIRFLOW := 3.1.3
 
-.PHONY: demo test check fuzz audit prism bench viewer clean
+.PHONY: demo test check fuzz audit prism airflow bench viewer clean
 
 demo: $(VENV)/.run $(VIEWER)
 	$(BIN)/nostalgin demo -o $(CITY)
@@ -46,6 +48,12 @@ prism: $(BIN)/prism
 
 $(BIN)/prism: | $(UV)
 	GOBIN=$(CURDIR)/$(BIN) $(GO) install github.com/apache/beam/sdks/v2/go/cmd/prism@v$(BEAM)
+
+airflow: .tools/airflow/bin/airflow
+
+.tools/airflow/bin/airflow: | $(UV)
+	$(UV) venv --quiet .tools/airflow
+	VIRTUAL_ENV=$(CURDIR)/.tools/airflow $(UV) pip install --quiet apache-airflow==$(AIRFLOW)
 
 bench: $(VENV)/.test
 	for f in tests/bench/bench_*.py; do $(BIN)/python $$f || exit 1; done

@@ -25,6 +25,37 @@ Examples:
   nostalgin build city --runner FlinkRunner --flink_master host:8081
 """
 
+Schemes = Annotated[
+    list[str] | None,
+    typer.Option(help="Let the manifest's roots be gs://... ; may be repeated."),
+]
+MaxRejected = Annotated[
+    float,
+    typer.Option(
+        min=0, max=1, help="Share of photos that may give nothing; above it, exit 3."
+    ),
+]
+PublishAnyway = Annotated[
+    bool, typer.Option("--publish-anyway", help="Replace a site that shows more, too.")
+]
+Retry = Annotated[
+    bool, typer.Option("--retry", help="Try again what ended its process twice.")
+]
+Webp = Annotated[
+    bool, typer.Option("--webp/--no-webp", help="Textures as WebP, or as PNG.")
+]
+Seconds = Annotated[
+    float,
+    typer.Option(
+        "--stage-seconds",
+        min=0,
+        help="A stage's time for a photo; a block may take more.",
+    ),
+]
+Gigabytes = Annotated[
+    float, typer.Option("--stage-gigabytes", min=0.5, help="And its memory.")
+]
+
 
 def build_command(
     context: typer.Context,
@@ -32,35 +63,13 @@ def build_command(
     *,
     shard: Annotated[str, typer.Option(help="Part of the blocks, as 3/16.")] = "",
     models: ModelsFolder = None,
-    allow_scheme: Annotated[
-        list[str] | None,
-        typer.Option(help="Let the manifest's roots be gs://... ; may be repeated."),
-    ] = None,
-    max_rejected: Annotated[
-        float,
-        typer.Option(
-            min=0,
-            max=1,
-            help="Share of photos that may give nothing; above it, exit 3.",
-        ),
-    ] = 0.5,
-    publish_anyway: Annotated[
-        bool,
-        typer.Option("--publish-anyway", help="Replace a site that shows more, too."),
-    ] = False,
-    retry: Annotated[
-        bool, typer.Option("--retry", help="Try again what ended its process twice.")
-    ] = False,
-    webp: Annotated[
-        bool, typer.Option("--webp/--no-webp", help="Textures as WebP, or as PNG.")
-    ] = True,
-    seconds: Annotated[
-        float,
-        typer.Option("--stage-seconds", min=0, help="A stage's time for a photo."),
-    ] = 300.0,
-    gigabytes: Annotated[
-        float, typer.Option("--stage-gigabytes", min=0.5, help="And its memory.")
-    ] = 4.0,
+    allow_scheme: Schemes = None,
+    max_rejected: MaxRejected = 0.5,
+    publish_anyway: PublishAnyway = False,
+    retry: Retry = False,
+    webp: Webp = True,
+    seconds: Seconds = 300.0,
+    gigabytes: Gigabytes = 4.0,
     json_lines: JsonLines = False,
     quiet: Quiet = False,
 ) -> None:

@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, Quiet
 from pipelines.console import Voice, errors, fail
 
 MOST: Final = 10  # of a kind, to a reader
@@ -30,6 +30,7 @@ def check_command(
         bool, typer.Option("--strict", help="End with 3 for doubts, too.")
     ] = False,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Look over a city folder: rows, keys, files, copies, rights, streets, widths.
 
@@ -40,7 +41,7 @@ def check_command(
     from pipelines.index.manifest import Unusable
     from pipelines.store import Store
 
-    voice = Voice(errors, machine=json_lines)
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
     try:
         found = check.check(Store(city), pictures=pictures)
     except Unusable as problem:

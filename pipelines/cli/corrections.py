@@ -4,7 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, Quiet
 from pipelines.console import Voice, errors, fail
 
 EXAMPLES: Final = """
@@ -20,6 +20,7 @@ def corrections_command(
     city: Annotated[str, typer.Argument(help="The city folder that `index` made.")],
     *,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Show a city's corrections, and what each changes; nothing is written.
 
@@ -32,11 +33,13 @@ def corrections_command(
     from pipelines.index.manifest import Unusable
     from pipelines.store import Store
 
-    voice = Voice(errors, machine=json_lines)
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
     store = Store(city)
     try:
         found = manifest.read(store)
-        made = corrections.applied(found.rows, corrections.read(store))
+        given = corrections.read(store)
+        made = corrections.fitting(corrections.applied(found.rows, given), store)
+        made = corrections.measured(made, store)
     except Unusable as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:

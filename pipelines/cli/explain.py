@@ -69,3 +69,33 @@ def explain_command(
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
         echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
     echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
+
+
+def explain_front_command(
+    city: Annotated[Path, typer.Argument(help="A finished city.")],
+    front: Annotated[str, typer.Argument(help="A front's id, as 996-33-0.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write to.")],
+) -> None:
+    """Show all views of one front, laid over each other, and what came from where.
+
+    Writes every view as a PNG, all of them side by side as sheet.png, and which
+    photograph lent how many texels as front.json.
+    """
+    from pipelines.models import one_thread
+
+    one_thread()
+    from pipelines import explain
+
+    try:
+        report = explain.explain_front(city, front, out)
+    except explain.Unshown as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(out, problem) from problem
+    echo(
+        f"{front}: {report['unseen']:.1%} hidden in {report['photo']}, "
+        f"{report['left']:.1%} in all {1 + len(report['views'])}"
+    )
+    for one in report["views"]:
+        echo(f"{one['photo']}: {one['why'] or str(one['lent']) + ' texels'}")
+    echo(f"see {out / 'sheet.png'} and {out / 'front.json'}")

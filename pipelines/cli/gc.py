@@ -4,7 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import JsonLines
+from pipelines.cli.launch import JsonLines, Quiet
 from pipelines.console import Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
@@ -26,6 +26,7 @@ def gc_command(
         bool, typer.Option("--dry-run", help="Drop nothing, tell what would be.")
     ] = False,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """Drop runs that are not kept, and artifacts that no kept run refers to.
 
@@ -45,7 +46,7 @@ def gc_command(
     except OSError as problem:
         raise unwritable(city, problem) from problem
     words = "would be dropped" if dry_run else "dropped"
-    Voice(errors, machine=json_lines).say(
+    Voice(errors, machine=json_lines, quiet=quiet).say(
         "done",
         f"{done.artifacts} artifacts and {len(done.runs)} runs {words}, "
         f"{len(done.kept_runs)} runs kept",

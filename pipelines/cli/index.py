@@ -1,12 +1,18 @@
 """`nostalgin index`: a folder of photographs and a list become a manifest."""
 
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, Quiet
+from pipelines.cli.asking import Whose, asking
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, ModelsFolder, Quiet
 from pipelines.console import Voice, errors, fail, indexed, unwritable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from pipelines.index import Indexed
 
 EXAMPLES: Final = """
 Examples:
@@ -21,49 +27,81 @@ Examples:
 
   nostalgin index photos --catalogue list.csv -o city --outlines footprints.geojson
 
+  nostalgin index scans --catalogue list.csv -o city --boards all
+
+  nostalgin index scans --profile plain -o city        [dim]# names tell nothing[/]
+
   nostalgin index https://iiif.example.org/street/manifest.json -o city
 """
 
+List = Annotated[
+    str | None,
+    typer.Option(help="A list with block, lot, street...: CSV, JSON or IIIF."),
+]
+Blocks = Annotated[
+    list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
+]
+Credit = Annotated[str, typer.Option(help="Whom to name beside the photos.")]
+Title = Annotated[
+    str, typer.Option(help="The city's name on its page; else its folder's.")
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Replace a mended manifest; a copy is kept.")
+]
+Outlines = Annotated[
+    Path | None,
+    typer.Option(help="GeoJSON or CityJSON of buildings or blocks, with a key."),
+]
+OutlineKey = Annotated[
+    str, typer.Option(help="The property of an outline that names its block.")
+]
+OutlineCrs = Annotated[
+    str, typer.Option(help="The outlines' reference system, as EPSG:2263.")
+]
+Places = Annotated[
+    Path | None, typer.Option(help="CSV with block, lon, lat and maybe bearing.")
+]
+Place = Annotated[
+    str, typer.Option(help="LAT,LON,BEARING of the first block, for a whole city.")
+]
+Boards = Annotated[
+    Whose,
+    typer.Option(
+        help="Whose number boards are read: of photographs that neither their name "
+        "nor the list places, of all, or of none."
+    ),
+]
+Archive = Annotated[
+    str,
+    typer.Option(
+        help="How files are named and what boards are like: nyc-1940, plain, or a TOML "
+        "file of one's own (docs/placards.md)."
+    ),
+]
+Streets = Annotated[Path | None, typer.Option(help="CSV with street and width_m.")]
+
 
 def index_command(
+    context: typer.Context,
     photos: Annotated[
         str, typer.Argument(help="The folder of the photos, or a IIIF manifest.")
     ],
     city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
     *,
-    catalogue: Annotated[
-        str | None,
-        typer.Option(help="A list with block, lot, street...: CSV, JSON or IIIF."),
-    ] = None,
-    block: Annotated[
-        list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
-    ] = None,
-    credit: Annotated[str, typer.Option(help="Whom to name beside the photos.")] = "",
-    title: Annotated[
-        str, typer.Option(help="The city's name on its page; else its folder's.")
-    ] = "",
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace a mended manifest; a copy is kept.")
-    ] = False,
-    outlines: Annotated[
-        Path | None,
-        typer.Option(help="GeoJSON or CityJSON of buildings or blocks, with a key."),
-    ] = None,
-    outline_key: Annotated[
-        str, typer.Option(help="The property of an outline that names its block.")
-    ] = "",
-    outline_crs: Annotated[
-        str, typer.Option(help="The outlines' reference system, as EPSG:2263.")
-    ] = "",
-    places: Annotated[
-        Path | None, typer.Option(help="CSV with block, lon, lat and maybe bearing.")
-    ] = None,
-    place: Annotated[
-        str, typer.Option(help="LAT,LON,BEARING of the first block, for a whole city.")
-    ] = "",
-    streets: Annotated[
-        Path | None, typer.Option(help="CSV with street and width_m.")
-    ] = None,
+    catalogue: List = None,
+    block: Blocks = None,
+    credit: Credit = "",
+    title: Title = "",
+    force: Force = False,
+    outlines: Outlines = None,
+    outline_key: OutlineKey = "",
+    outline_crs: OutlineCrs = "",
+    places: Places = None,
+    place: Place = "",
+    streets: Streets = None,
+    boards: Boards = Whose.silent,
+    profile: Archive = "nyc-1940",
+    models: ModelsFolder = None,
     json_lines: JsonLines = False,
     quiet: Quiet = False,
 ) -> None:
@@ -73,27 +111,32 @@ def index_command(
     its columns.
     """
     from pipelines import index
-    from pipelines.store import Busy, Store, held
 
     voice = Voice(errors, machine=json_lines, quiet=quiet)
-    named = {"credit": credit, "title": title}
     told = index.Asked(outlines, outline_key, outline_crs, places, place, streets)
+    shelf = {"models": str(models or ""), "beam": context.args}
+    ask = asking(city, boards, voice, **shelf)
+
+    def work() -> "Indexed":
+        chosen = {"blocks": block or (), "force": force, "places": told, "ask": ask}
+        named = {"credit": credit, "title": title, "archive": index.profile(profile)}
+        return index.index(photos, catalogue, city, **chosen, **named, tell=voice.say)
+
+    made = kept_from_others(city, work)
+    indexed(made, city, voice)
+    if made.astray:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
+
+
+def kept_from_others(city: str, work: "Callable[[], Indexed]") -> "Indexed":
+    """Do something with a city folder that no run is at work in; tell what hinders."""
+    from pipelines import index
+    from pipelines.store import Busy, Store, held
+
     try:
         with held(Store(city)):
-            made = index.index(
-                photos,
-                catalogue,
-                city,
-                blocks=block or (),
-                force=force,
-                places=told,
-                tell=voice.say,
-                **named,
-            )
+            return work()
     except (index.Nothing, Busy) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
-    indexed(made, city, voice)
-    if made.astray:
-        raise typer.Exit(TOO_MANY_REJECTIONS)

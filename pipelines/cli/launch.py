@@ -1,7 +1,8 @@
 """What commands share: options, and how a build is checked, run and told."""
 
+import contextlib
 import logging
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -55,6 +56,17 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     """Build a city, and tell what came of it or what went wrong."""
     options = told(city, **asked)
     from pipelines import build
+
+    with failing(city):
+        report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
+    summed(report, voice)
+    return report
+
+
+@contextlib.contextmanager
+def failing(city: str) -> Iterator[None]:
+    """Tell what a run ends with in a line, and end with it."""
+    from pipelines import build
     from pipelines.index.manifest import Unusable
     from pipelines.models import Unlocked
     from pipelines.site import Foreign, ViewerMissingError
@@ -64,10 +76,8 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     plain = (*plain, Busy, Damaged)
     try:
         with hushed(errors, plain=(*plain, OSError)):
-            report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
+            yield
     except plain as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
-    summed(report, voice)
-    return report

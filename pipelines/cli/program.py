@@ -16,6 +16,9 @@ from pipelines.cli import (
     index,
     publish,
     report,
+    reprocess,
+    review,
+    schedule,
     view,
     workers,
 )
@@ -58,9 +61,13 @@ def nostalgin(
 
 # In this order `--help` lists them.
 app.command("explain", epilog=explain.EXAMPLES)(explain.explain_command)
-app.command("index", epilog=index.EXAMPLES)(index.index_command)
+app.command("explain-front")(explain.explain_front_command)
+app.command("index", epilog=index.EXAMPLES, context_settings=TO_BEAM)(
+    index.index_command
+)
 app.command("check", epilog=check.EXAMPLES)(check.check_command)
 app.command("corrections", epilog=corrections.EXAMPLES)(corrections.corrections_command)
+app.command("review", epilog=review.EXAMPLES)(review.review_command)
 app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
     build.build_command
 )
@@ -68,6 +75,12 @@ app.command("publish", epilog=publish.EXAMPLES)(publish.publish_command)
 app.command("view", epilog=view.EXAMPLES)(view.view_command)
 app.command("export", epilog=export.EXAMPLES)(export.export_command)
 app.command("demo", epilog=demo.EXAMPLES, context_settings=TO_BEAM)(demo.demo_command)
+app.command("reprocess", epilog=reprocess.EXAMPLES, context_settings=TO_BEAM)(
+    reprocess.reprocess_command
+)
+app.command("schedule", epilog=schedule.EXAMPLES, context_settings=TO_BEAM)(
+    schedule.schedule_command
+)
 app.command("report", epilog=report.EXAMPLES)(report.report_command)
 app.command("status", epilog=report.STATUS_EXAMPLES)(report.status_command)
 app.command("gc", epilog=gc.EXAMPLES)(gc.gc_command)

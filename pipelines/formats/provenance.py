@@ -16,7 +16,7 @@ from pipelines.models import NETWORKS, PACKAGED, Models, Unlocked
 from pipelines.site import CURRENT, safe
 from pipelines.store import Damaged, Store, runs
 
-STAGES: Final = ("segment", "matte", "rectify", "inpaint", "block")
+STAGES: Final = ("segment", "matte", "rectify", "borrow", "inpaint", "block")
 MANIFESTS: Final = ("manifest.csv", "manifest.parquet")
 PREFIXES: Final = {
     name: f"urn:nostalgin:{name}:"

@@ -32,6 +32,18 @@ class Bar:
 
 
 @dataclass(frozen=True)
+class Times:
+    """How long a stage took for one element, by the clock."""
+
+    stage: str
+    count: int
+    skipped: int
+    median_s: float
+    p90_s: float
+    longest_s: float
+
+
+@dataclass(frozen=True)
 class Picture:
     """A photograph on a contact sheet."""
 
@@ -55,6 +67,8 @@ class Figures:
     guessed_widths: int
     reasons: tuple[Bar, ...]
     stages: tuple[Bar, ...]  # CPU seconds
+    times: tuple[Times, ...]
+    memory_mb: dict[str, int]  # the most that a process of each kind held
     shares: tuple[Bar, ...]  # buildings, by how much of their fronts a camera saw
     heights: tuple[Bar, ...]  # buildings, by height
     of_blocks: tuple[dict[str, Any], ...]
@@ -83,6 +97,7 @@ def figures(store: Store, run: str = "") -> Figures:
     except FileNotFoundError as problem:
         raise NoRun(f"{store.root}: run {run} left no tables; build again") from problem
     buildings = [one for record in records for one in record["buildings"]]
+    record = read_json(store, f"runs/{run}/run.json")
     useless = set(keys).difference(seen)
     return Figures(
         past=past(store, run, current(store)),
@@ -95,7 +110,9 @@ def figures(store: Store, run: str = "") -> Figures:
         guessed_heights=sum(one["height_assumed"] for one in buildings),
         guessed_widths=sum(one["width_assumed"] for one in buildings),
         reasons=reasons(rejections),
-        stages=stages(read_json(store, f"runs/{run}/run.json")),
+        stages=stages(record),
+        times=times(record),
+        memory_mb=record.get("memory_mb", {}),
         shares=counted((b["photographed_share"] for b in buildings), SHARES, ""),
         heights=counted((b["height_m"] for b in buildings), HEIGHTS_M, " m"),
         of_blocks=tuple(sorted(of_blocks(records), key=by_number)),
@@ -125,6 +142,23 @@ def stages(told: dict[str, Any]) -> tuple[Bar, ...]:
         note = f"{made} made" + (f", {spent / made:.2f} s each" if made else "")
         bars.append(Bar(name, round(spent, 1), note))
     return tuple(sorted(bars, key=lambda bar: (-bar.value, bar.name)))
+
+
+def times(told: dict[str, Any]) -> tuple[Times, ...]:
+    """Tell how long elements took, stage by stage, but for those that were skipped."""
+    return tuple(
+        Times(
+            name,
+            count,
+            int(one.get("skipped", 0)),
+            *(
+                one.get(word, 0) / 1000
+                for word in ("median_ms", "p90_ms", "longest_ms")
+            ),
+        )
+        for name, one in sorted(told.get("stages", {}).items())
+        if (count := sum(one.get("spans", {}).values())) or one.get("skipped")
+    )
 
 
 def counted(

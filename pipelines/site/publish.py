@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
@@ -42,8 +43,11 @@ def publish(
     *,
     title: str = "",
     anchors: Anchors | None = None,
+    trusting: bool = False,
 ) -> tuple[str, ...]:
     """Write the site of a run that has blocks, and only then point at the run.
+
+    `trusting`, models and pictures that stand in the site already are not opened.
 
     Without a `title` the city is called after its folder. A store elsewhere gets the
     pointer alone: `nostalgin build` on a machine that mounts it writes the site.
@@ -58,12 +62,14 @@ def publish(
         placed = placing(records(blocks), rows, anchors or Anchors())
         runs.write_table(store, run, "places", placed.rows)
         notes = placed.notes
+        standing = site.stands(folder / SITE) if trusting else frozenset[str]()
         site.assemble(
             folder / SITE,
             blocks=models(store, run, blocks, rows, placed),
-            photos=Thumbnails(store, run, versions),
+            photos=Thumbnails(store, run, versions, standing),
             title=cleaned(title) or of_folder(folder.resolve().name),
             place=placed.origin,
+            trusting=trusting,
         )
     store.write_bytes(CURRENT, f"{run}\n".encode())
     return notes
@@ -120,6 +126,8 @@ def models(
                 coarse_texel_m=row["coarse_texel_m"],
                 footprints_m=stand[row["block"]][0],
                 heights_m=stand[row["block"]][1],
+                sha256=row["sha256"],
+                coarse_sha256=row["coarse_sha256"],
             )
         )
     return made
@@ -239,8 +247,14 @@ def damaged(store: Store, run: str, versions: Versions) -> list[str]:
 class Thumbnails(Mapping[str, bytes]):
     """The small pictures of all photos that could be read, by key, read one by one."""
 
-    def __init__(self, store: Store, run: str, versions: Versions) -> None:
-        """Find out which there are."""
+    def __init__(
+        self,
+        store: Store,
+        run: str,
+        versions: Versions,
+        standing: AbstractSet[str] = frozenset(),
+    ) -> None:
+        """Find out which there are; what is `standing` in the site, is there."""
         self._store = store
         self._paths = {
             row["key"]: versions.path(
@@ -251,7 +265,8 @@ class Thumbnails(Mapping[str, bytes]):
         self._paths = {
             key: path
             for key, path in sorted(self._paths.items())
-            if store.verdict(path) is True
+            if f"photos/{site.safe(key)}.webp" in standing
+            or store.verdict(path) is True
         }
 
     def __getitem__(self, key: str) -> bytes:

@@ -37,6 +37,7 @@ def record(
     """Write what is known of a block.
 
     `photos` maps the key of each photo to what is told of it (`credit`, `caption`);
+    one that is `lent` is a record of a neighbour, and shows this building as well;
     `stood` tells of facades where their photo's camera stood;
     `rejections` and `more` (a year, say) map building ids. Lengths are metres, rounded
     to centimetres; `photographed_share` is the share of a building's fronts, by width,
@@ -47,9 +48,9 @@ def record(
     by_id = {front.front_id: front for front in fronts}
     facades = {(one.photo, one.facade): one for one in seen}
     ordered = sorted(assignments, key=lambda one: (-one.score, one.photo))
-    showing: dict[str, list[str]] = {}
+    showing: dict[str, list[Assignment]] = {}
     for one in ordered:
-        showing.setdefault(one.front_id, []).append(one.photo)
+        showing.setdefault(one.front_id, []).append(one)
     return {
         "block": block.block,
         "outline_m": [_rounded(outline) for outline in block.outline_m],
@@ -77,15 +78,16 @@ def _building(
     building: Building,
     fronts: Mapping[str, Front],
     facades: Mapping[Texture, Seen],
-    showing: Mapping[str, Sequence[str]],
+    showing: Mapping[str, Sequence[Assignment]],
     photos: Mapping[str, Mapping[str, Any]],
 ) -> Json:
     names = [wall.front_id for wall in building.walls if wall.front_id is not None]
     own = [fronts[name] for name in names if name in fronts]
     own.sort(key=lambda front: (front.ring, front.rank))
     worn = [wall.texture[0] for wall in building.walls if wall.texture]
-    shown = [key for front in own for key in showing.get(front.front_id, ())]
-    keys = list(dict.fromkeys([*worn, *shown]))
+    shown = [one for front in own for one in showing.get(front.front_id, ())]
+    keys = list(dict.fromkeys([*worn, *(one.photo for one in shown)]))
+    lent = {one.photo for one in shown if one.lent}
     return {
         "id": building.building_id,
         "lot": own[0].lot if own else building.building_id,
@@ -95,7 +97,13 @@ def _building(
         ),
         "fronts": [front.front_id for front in own],
         "photos": [
-            {"key": key, "used": key in worn, **photos.get(key, {})} for key in keys
+            {
+                "key": key,
+                "used": key in worn,
+                **({"lent": True} if key in lent else {}),
+                **photos.get(key, {}),
+            }
+            for key in keys
         ],
         "width_m": round(
             own[0].width_m if own else _width(building.walls[0]), CENTIMETRE

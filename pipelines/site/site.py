@@ -21,7 +21,9 @@ import io
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -31,7 +33,7 @@ from PIL import Image
 from nostalgin_core import city
 from nostalgin_core.arrays import Gray
 from nostalgin_core.model import legend
-from pipelines.site.folder import Folder
+from pipelines.site.folder import RECORD, Folder, recorded
 
 VIEWER: Final = Path(__file__).with_name("viewer_dist")
 THUMBNAIL_PX: Final = 1600  # a screen's height, for the view from where it was taken
@@ -71,6 +73,8 @@ class BlockModel:
     coarse_texel_m: float = 0.0  # the largest of these
     footprints_m: np.ndarray | None = None  # n 4 2, of its buildings in its own frame
     heights_m: np.ndarray | None = None
+    sha256: str = ""  # of `glb`, where it is known without reading it
+    coarse_sha256: str = ""
 
 
 def assemble(
@@ -81,9 +85,11 @@ def assemble(
     title: str,
     place: city.Place | None = None,
     viewer: Path = VIEWER,
+    trusting: bool = False,
 ) -> None:
     """Write the site of a city; nothing outside `destination` is touched.
 
+    `trusting` leaves the models and pictures that stand there as they are, unopened.
     `photos` are encoded thumbnails (WebP, JPEG or PNG) by key. A building's photo whose
     key is not among them gets no `file`, and the viewer says so. Names of blocks and
     photos may be anything: file names are made from their harmless letters, and from
@@ -94,56 +100,65 @@ def assemble(
         Foreign: if `destination` or a file in the way is not our own.
         ValueError: if there is no block, or two have the same name.
     """
+    index = _sound(blocks, viewer)
+    standing = stands(destination) if trusting else frozenset[str]()
+    models, coarse = zip(
+        *(_named(one, trusting=trusting) for one in blocks), strict=True
+    )
+    files = {key: _pictured(key, photos, standing) for key in photos}
+    tiles = [_tile(*each) for each in zip(models, blocks, coarse, strict=True)]
+    tree = city.tree(tiles, place=place)
+    tileset = _text(tree.tileset)
+    named = f"tileset-{hashlib.sha256(tileset).hexdigest()[:8]}.json"
+    each = zip(models, blocks, coarse, tree.frames, strict=True)
+    record = _record(title, named, place, [_block(*one, files) for one in each])
+    far = zip(coarse, blocks, strict=True)
+    pages = {
+        "index.html": index.read_bytes(),
+        named: tileset,
+        **dict(zip(SWAPPED, (_text(record), tileset), strict=True)),
+    }
+    named_files = {
+        **_assets(viewer),
+        **{name: partial(photos.__getitem__, key) for key, name in files.items()},
+        **{uri: one.glb for uri, one in zip(models, blocks, strict=True)},
+        **{uri: one.coarse for uri, one in far if one.coarse is not None},
+        **tree.files,
+        **pages,
+    }
+    _written(destination, named_files, standing & {*models, *coarse, *files.values()})
+
+
+def _sound(blocks: Sequence[BlockModel], viewer: Path) -> Path:
+    """Insist on blocks of different names, and on a viewer; give its page."""
     names = [block.name for block in blocks]
     if len(set(names)) != len(names):
         raise ValueError(f"blocks must have names of their own: {sorted(names)}")
     index = viewer / "index.html"
     if not index.is_file():
         raise ViewerMissingError
-    models = {f"blocks/{safe(one.name)}-{digest(one.glb)}.glb": one for one in blocks}
-    coarse = [
-        "" if one.coarse is None else f"far/{safe(one.name)}-{digest(one.coarse)}.glb"
-        for one in blocks
-    ]
-    files = {key: f"photos/{safe(key)}{suffix(data)}" for key, data in photos.items()}
-    tiles = [
-        _tile(uri, one, far)
-        for (uri, one), far in zip(models.items(), coarse, strict=True)
-    ]
-    tree = city.tree(tiles, place=place)
-    tileset = _text(tree.tileset)
-    named = f"tileset-{hashlib.sha256(tileset).hexdigest()[:8]}.json"
-    record = {
-        "title": title,
-        "tileset": named,
-        "legend": legend(),
-        **({"place": dataclasses.asdict(place)} if place is not None else {}),
-        "blocks": [
-            {**_block(uri, one, files), "coarse": far, "frame": frame}
-            for (uri, one), far, frame in zip(
-                models.items(), coarse, tree.frames, strict=True
-            )
-        ],
-    }
-    assets = {f"assets/{p.name}": p for p in sorted((viewer / "assets").iterdir())}
-    far = {
-        uri: one.coarse
-        for uri, one in zip(coarse, blocks, strict=True)
-        if one.coarse is not None
-    }
-    names = [*assets, *files.values(), *models, *far, *tree.files]
-    site = Folder(destination, [*names, "index.html", named, *SWAPPED])
-    for name, path in assets.items():
-        site.write(name, path.read_bytes())
-    for key, data in photos.items():
-        site.write(files[key], data)
-    for uri, one in models.items():
-        site.write(uri, content(one.glb))
-    for uri, data in (far | tree.files).items():
-        site.write(uri, content(data))
-    pages = (index.read_bytes(), tileset, _text(record), tileset)
-    for name, data in zip(("index.html", named, *SWAPPED), pages, strict=True):
-        site.write(name, data)
+    return index
+
+
+def _assets(viewer: Path) -> dict[str, Data]:
+    """Name the viewer's files, and how to read them."""
+    paths = sorted((viewer / "assets").iterdir())
+    return {f"assets/{path.name}": path.read_bytes for path in paths}
+
+
+def _written(
+    destination: Path,
+    files: Mapping[str, Data],
+    standing: AbstractSet[str] = frozenset(),
+) -> None:
+    """Write files in their order, one at a time, and remove what is named no more.
+
+    Those that are `standing` are what they are to be.
+    """
+    site = Folder(destination, list(files))
+    for name, data in files.items():
+        if name not in standing:
+            site.write(name, content(data))
     site.prune()
 
 
@@ -156,9 +171,37 @@ def thumbnail(image: Gray, *, longest_px: int = THUMBNAIL_PX) -> bytes:
     return file.getvalue()
 
 
-def digest(data: Data) -> str:
+def stands(destination: Path) -> frozenset[str]:
+    """List the files of the city that is shown, as far as they are there."""
+    if not (destination / RECORD).exists():
+        return frozenset()
+    paths = {name: destination / name for name in recorded(destination)[0]}
+    return frozenset(
+        n for n, at in paths.items() if at.is_file() and not at.is_symlink()
+    )
+
+
+def _named(one: BlockModel, *, trusting: bool) -> tuple[str, str]:
+    """Name the files of a block's model and of its coarse one; "" if it has none."""
+    fine = digest(one.glb, one.sha256 if trusting else "")
+    model = f"blocks/{safe(one.name)}-{fine}.glb"
+    if one.coarse is None:
+        return model, ""
+    coarse = digest(one.coarse, one.coarse_sha256 if trusting else "")
+    return model, f"far/{safe(one.name)}-{coarse}.glb"
+
+
+def _pictured(key: str, photos: Mapping[str, bytes], standing: AbstractSet[str]) -> str:
+    """Name a photo's small picture: as it stands there, else by its first bytes."""
+    stem = f"photos/{safe(key)}"
+    known = (stem + end for end in (".webp", *(end for _, end in SUFFIXES)))
+    there = next((name for name in known if name in standing), None)
+    return there or stem + suffix(photos[key])
+
+
+def digest(data: Data, sha256: str = "") -> str:
     """Give a model's file name what changes with its content."""
-    return hashlib.sha256(content(data)).hexdigest()[:8]
+    return (sha256 or hashlib.sha256(content(data)).hexdigest())[:8]
 
 
 def content(data: Data) -> bytes:
@@ -201,12 +244,21 @@ def _tile(uri: str, one: BlockModel, coarse: str) -> city.Tile:
     )
 
 
-def _block(uri: str, block: BlockModel, files: Mapping[str, str]) -> Json:
+def _record(title: str, tileset: str, place: city.Place | None, blocks: list) -> Json:
+    told = {} if place is None else {"place": dataclasses.asdict(place)}
+    named = {"title": title, "tileset": tileset, "legend": legend()}
+    return {**named, **told, "blocks": blocks}
+
+
+def _block(
+    uri: str, block: BlockModel, far: str, frame: Any, files: Mapping[str, str]
+) -> Json:
     buildings = [
         {**building, "photos": [_photo(one, files) for one in building["photos"]]}
         for building in block.record["buildings"]
     ]
-    return {**block.record, "name": block.name, "uri": uri, "buildings": buildings}
+    told = {"name": block.name, "uri": uri, "buildings": buildings}
+    return {**block.record, **told, "coarse": far, "frame": frame}
 
 
 def _photo(photo: Mapping[str, Any], files: Mapping[str, str]) -> Json:

@@ -27,7 +27,7 @@ from pipelines.index.cells import front_from
 from pipelines.index.manifest import Manifest, Row, Unusable
 from pipelines.models import Models, Unlocked
 from pipelines.site.folder import Foreign, written
-from pipelines.store import Store, parquet_bytes
+from pipelines.store import Store, tables
 from tests.hostile import artifacts, catalogues, images, pictures
 from tests.hostile.case import bounded, marks
 
@@ -249,7 +249,7 @@ def parquets() -> list[bytes]:
             artifacts.OTHER, Rejection("a.jpg", "photo", "empty file", "copy it")
         )
         sound = [store.read_bytes(name) for name in (artifacts.PATH, artifacts.OTHER)]
-    return [*sound, parquet_bytes(pa.table({"facade": ["x"]}))]
+    return [*sound, tables.parquet_bytes(pa.table({"facade": ["x"]}))]
 
 
 @marked("artifact bytes")
@@ -276,7 +276,7 @@ def tabulated() -> list[bytes]:
     pq.write_table(
         pa.Table.from_pylist([{"photo": "x.png", "block": "5"}], manifest.SCHEMA), sink
     )
-    return [sink.getvalue(), parquet_bytes(pa.table({"photo": [1]}))]
+    return [sink.getvalue(), tables.parquet_bytes(pa.table({"photo": [1]}))]
 
 
 @marked("manifest Parquet bytes")

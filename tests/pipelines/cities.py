@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pipelines import build
 from pipelines.build import Report
-from pipelines.index import manifest
+from pipelines.index import manifest, readings
 
 
 def built(city: Path, beam: Sequence[str] = (), shard: str = "") -> Report:
@@ -17,11 +17,13 @@ def built(city: Path, beam: Sequence[str] = (), shard: str = "") -> Report:
 
 
 def tree(city: Path) -> dict[str, str]:
-    """Hash every file of a city, but for the lock and the one that tells the time."""
+    """Hash every file of a city, but for the lock and those that tell the time."""
     return {
         path.relative_to(city).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(city.rglob("*"))
-        if path.is_file() and path.name not in ("run.json", ".lock")
+        if path.is_file()
+        and path.suffix != ".prom"
+        and path.name not in ("run.json", ".lock")
     }
 
 
@@ -34,6 +36,6 @@ def copied(city: Path, folder: Path) -> Path:
     shutil.copytree(city.parent / "models", folder / "models")
     fresh = folder / "city"
     fresh.mkdir()
-    for name in (manifest.CSV, manifest.PARQUET):
+    for name in (manifest.CSV, manifest.PARQUET, readings.TABLE):
         shutil.copy(city / name, fresh / name)
     return fresh

@@ -62,11 +62,11 @@ def objects(folder: str) -> dict[str, bytes]:
 
 
 def tree(folder: str) -> dict[str, str]:
-    """Hash all objects below a folder, but for the one that tells the time."""
+    """Hash all objects below a folder, but for those that tell the time."""
     return {
         name: hashlib.sha256(data).hexdigest()
         for name, data in objects(folder).items()
-        if not name.endswith("run.json")
+        if not name.endswith(("run.json", ".prom"))
     }
 
 

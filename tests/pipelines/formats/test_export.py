@@ -16,7 +16,7 @@ from PIL import Image
 from pyproj import Geod
 from scipy.spatial import cKDTree
 
-from nostalgin_core import evidence, formats
+from nostalgin_core import evidence, formats, rests
 from pipelines.formats import Unexportable, export
 from pipelines.site import Foreign
 from tests.core import sample_block
@@ -229,20 +229,22 @@ def test_evidence_shares_are_those_of_the_texels(city: Path, out: Path) -> None:
         if feature["properties"]["block"] != "1":
             continue
         mesh = shown.geometry[feature["id"]]
-        counts = np.zeros(7)
+        counts = np.zeros(8)
         walls = np.flatnonzero(np.abs(mesh.face_normals[:, 1]) <= 0.5)
         for face in walls:
             u, v = mesh.visual.uv[mesh.faces[face]].T
             xs = np.round([u.min() * w, u.max() * w]).astype(int)
             ys = np.round([(1 - v.max()) * h, (1 - v.min()) * h]).astype(int)
             tile = codes[ys[0] : ys[1], xs[0] : xs[1]]
-            share = np.bincount(tile.ravel(), minlength=7) / tile.size
+            share = np.bincount(tile.ravel(), minlength=8) / tile.size
             counts += share * mesh.area_faces[face]
         counts[evidence.NOTHING] = 0
         counts /= counts.sum()
         told_shares = [feature["properties"][f"evidence_{word}"] for word in words]
         np.testing.assert_allclose(told_shares, counts[1:6], atol=2e-4)
-        whole = sum(told_shares) + feature["properties"]["evidence_assumed"]
+        another = feature["properties"]["evidence_another_picture"]
+        assert another == pytest.approx(counts[rests.ANOTHER], abs=2e-4)
+        whole = sum(told_shares) + another + feature["properties"]["evidence_assumed"]
         assert whole == pytest.approx(1.0, abs=5e-4)
 
 

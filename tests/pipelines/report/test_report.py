@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from pipelines import report
 from pipelines.cli import app
+from pipelines.report.figures import Times
 from pipelines.store import Store, runs
 
 RUN = "0123456789ab"
@@ -70,7 +71,9 @@ def store(tmp_path: Path) -> Store:
         block("9", [building("9-1", share=1.0)]),
     ]
     runs.write_table(made, RUN, "blocks", blocks)
-    times = {"segment": {"cpu_milliseconds": 1500, "made": 3}, "photo": {"made": 4}}
+    spent = {"median_ms": 400, "p90_ms": 800, "longest_ms": 900, "spans": {"500": 3}}
+    segment = {"cpu_milliseconds": 1500, "made": 3, "skipped": 1, **spent}
+    times = {"segment": segment, "photo": {"made": 4}}
     told = {"run": RUN, "began": "2026-11-22T10:00:00Z", "seconds": 12.0}
     made.write_bytes(
         f"runs/{RUN}/run.json", json.dumps(told | {"stages": times}).encode()
@@ -92,6 +95,7 @@ def test_every_photo_and_every_building_is_counted_once(store: Store) -> None:
     assert [one["block"] for one in found.of_blocks] == ["9", "10"]
     assert found.stages[0].name == "segment"
     assert found.stages[0].note == "3 made, 0.50 s each"
+    assert found.times == (Times("segment", 3, 1, 0.4, 0.8, 0.9),)
 
 
 def test_the_worst_come_first(store: Store) -> None:

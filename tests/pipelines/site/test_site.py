@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nostalgin_core import evidence
+from nostalgin_core import rests
 from nostalgin_core.model import atlas, picture
 from nostalgin_core.records import (
     Assignment,
@@ -100,7 +100,7 @@ def test_the_site_tells_the_colours_that_its_models_evidence_is_painted_in(
     tmp_path: Path, viewer: Path
 ) -> None:
     legend = assembled(tmp_path / "site", viewer, model())["legend"]
-    codes = np.array(sorted(evidence.NAMES), np.uint8)[None]
+    codes = np.array(sorted(rests.NAMES), np.uint8)[None]
     page = atlas.Atlas(codes, codes, codes, {}, ())
     painted = Image.open(io.BytesIO(picture.evidence_key(page).data)).convert("RGB")
     tints = [legend[str(code)]["tint"] for code in codes[0]]

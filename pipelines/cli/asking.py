@@ -1,0 +1,47 @@
+"""How `index` has boards looked at: by a pipeline that is loaded when one is wanted."""
+
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from pipelines.cli.launch import told
+from pipelines.console import Voice, errors, fail, hushed
+
+if TYPE_CHECKING:  # both are slow to load
+    from pipelines.index import Ask, Heard
+
+
+class Whose(StrEnum):
+    """Whose boards are read."""
+
+    silent = "silent"
+    all = "all"
+    none = "none"
+
+
+def asking(
+    city: str, whose: Whose, voice: Voice, *, models: str, beam: Sequence[str]
+) -> "Ask | None":
+    """Say whose boards are looked at; Beam's options are looked at now."""
+    from pipelines.index import Ask
+
+    if beam:
+        told(city, models=models, beam=beam)
+    if whose is Whose.none:
+        return None
+
+    def boards(root: str, names: Sequence[str]) -> "Mapping[str, Heard]":
+        options = told(city, models=models, beam=beam)
+        from pipelines import build
+        from pipelines.models import Unlocked
+
+        words = f"looking at the boards of {len(names)} photos"
+        voice.say("boards", words, photos=len(names))
+        plain = (Unlocked, build.Lost, build.Unrun)
+        try:
+            with hushed(errors, plain=(*plain, OSError)):
+                return build.boards(options, root, names)
+        except plain as problem:
+            raise fail(str(problem)) from problem
+
+    return Ask(boards, whose.value)

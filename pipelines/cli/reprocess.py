@@ -1,0 +1,164 @@
+"""`nostalgin reprocess`: what is stale in a city is redone, and nothing else."""
+
+import json
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+from pipelines.cli.launch import (
+    TOO_MANY_REJECTIONS,
+    JsonLines,
+    ModelsFolder,
+    Quiet,
+    failing,
+    told,
+)
+from pipelines.console import Voice, Watch, echo, errors, fail, summed, unwritable
+
+if TYPE_CHECKING:
+    from pipelines.reprocess import Plan, Reprocessed
+
+EXAMPLES: Final = """
+Examples:
+
+  nostalgin reprocess city --dry-run        [dim]# tell what is stale, and its cost[/]
+
+  nostalgin reprocess city --direct_num_workers 2
+
+  nostalgin reprocess city --budget 1000    [dim]# photographs; the rest another time[/]
+
+  nostalgin reprocess city --rollback 0a1b2c3d4e5f    [dim]# show a kept run again[/]
+"""
+
+
+def reprocess_command(
+    context: typer.Context,
+    city: Annotated[str, typer.Argument(help="The city folder.")],
+    *,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Tell what would be redone; write nothing."),
+    ] = False,
+    thorough: Annotated[
+        bool, typer.Option("--thorough", help="Hash every photograph's bytes.")
+    ] = False,
+    budget: Annotated[
+        int, typer.Option(min=0, help="Photographs at most; the rest the next time.")
+    ] = 0,
+    rollback: Annotated[
+        str, typer.Option(metavar="RUN", help="Show this kept run again; redo nothing.")
+    ] = "",
+    models: ModelsFolder = None,
+    json_lines: JsonLines = False,
+    quiet: Quiet = False,
+) -> None:
+    """Redo what is stale: new, changed and removed photos, corrections, new versions.
+
+    Blocks that none of this touches stay as they are, and are not opened.
+    """
+    if rollback:
+        if dry_run or thorough or budget or context.args:
+            raise typer.BadParameter("--rollback takes no other options of a run")
+        again(city, rollback, Voice(errors, machine=json_lines, quiet=quiet))
+        return
+    asked = {"budget": budget, "thorough": thorough}
+    if dry_run:
+        tell(looked(city, str(models or ""), **asked), machine=json_lines)
+        return
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
+    done = redone(city, voice, str(models or ""), context.args, **asked)
+    if done.report is not None and done.report.held:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
+
+
+def again(city: str, run: str, voice: Voice) -> None:
+    """Show an earlier run again, or tell why that can't be."""
+    from pipelines import reprocess
+    from pipelines.store import Store, secretive
+
+    if secretive(city):
+        raise typer.BadParameter("credentials in the URI: give them by the environment")
+    try:
+        with failing(city):
+            reprocess.rollback(Store(city), run, tell=voice.say)
+    except reprocess.Unkept as problem:
+        raise fail(str(problem)) from problem
+    words = f"run {run} is shown; the manifest stays: what follows from it comes back"
+    voice.say("shown", f"{words} with the next build or reprocess", run=run)
+
+
+def redone(
+    city: str, voice: Voice, models: str, beam: Sequence[str], **asked: Any
+) -> "Reprocessed":
+    """Redo what is stale, and tell what came of it or what went wrong."""
+    options = told(city, models=models, beam=beam)
+    from pipelines import reprocess
+
+    with failing(city):
+        done = reprocess.reprocess(
+            options, tell=voice.say, watch=partial(Watch, voice), **asked
+        )
+    if done.report is None:
+        voice.say("done", lines(done.plan.told())[0], **done.plan.told())
+    else:
+        later = done.plan.later
+        words = f"; {later} stale photographs are left for the next time"
+        counts = f"{done.plan.photos} photographs and {done.plan.blocks} blocks redone"
+        voice.say("reprocessed", counts + words * bool(later), **done.plan.told())
+        summed(done.report, voice)
+    return done
+
+
+def looked(city: str, models: str, **asked: Any) -> "Plan":
+    """Find what is stale, or tell why that can't be."""
+    from pipelines import reprocess
+    from pipelines.index.manifest import Unusable
+    from pipelines.models import Models, Unlocked
+    from pipelines.store import Damaged, Store, secretive
+
+    if secretive(city):
+        raise typer.BadParameter("credentials in the URI: give them by the environment")
+    try:
+        networks = Models(models) if models else Models()
+        return reprocess.planned(reprocess.now(Store(city), networks), **asked)
+    except (Unusable, Unlocked, Damaged) as problem:
+        raise fail(str(problem)) from problem
+    except OSError as problem:
+        raise unwritable(city, problem) from problem
+
+
+def tell(plan: "Plan", *, machine: bool) -> None:
+    """Tell a plan on the standard output."""
+    known = plan.told()
+    if machine:
+        echo(json.dumps(known))
+        return
+    for line in lines(known):
+        echo(line)
+
+
+def lines(known: dict[str, Any]) -> list[str]:
+    """Tell a plan to people."""
+    if not (known["photos"] or known["blocks"] or known["moved"]):
+        return [f"nothing is stale: run {known['before']} is what is asked for"]
+    causes = ", ".join(f"{n} {name}" for name, n in known["causes"].items())
+    rows = ", ".join(f"{n} by {name}" for name, n in known["blocks_by_cause"].items())
+    said = [
+        f"{known['photos']} of {known['photos_asked']} photographs are to be redone"
+        + (f" ({causes})" if causes else ""),
+        f"{known['blocks']} of {known['blocks_asked']} blocks are looked at again"
+        + (f" ({rows})" if rows else ""),
+    ]
+    if known["moved"]:
+        said.append("the city's places or its title are others: the site is written")
+    made = ", ".join(f"{name} {n}" for name, n in known["made"].items())
+    said.append(f"to be made at most: {made or 'nothing'}")
+    if known["cpu_seconds"] is not None:
+        said.append(
+            f"estimated: {known['cpu_seconds']:.0f} CPU s, {known['seconds']:.0f} s"
+        )
+    if known["later"]:
+        said.append(f"{known['later']} stale photographs are left for the next time")
+    return said
