@@ -64,24 +64,15 @@ def by_hand(
     prior = camera.prior_focal_px(photo.frame)
     used, used_sd = focal or prior, focal_sd or prior * upright.LOG_FOCAL[1]
     aspect = camera.aspect(corners, used, photo.frame)
-    shape = warp.size(corners, aspect)
-    photo_from_elevation = warp.photo_from_elevation(corners, shape)
-    image, alpha, rests_on = warp.elevate(
-        photo.image,
-        one.alpha,
-        one.amodal,
-        photo_from_elevation,
-        shape,
-        frame=photo.frame,
-    )
+    straight = warp.straight(photo, one, corners, aspect)
     sd_deg, aspect_sd = spread(corners, used, used_sd, photo.frame, sd_px)
     return Elevation(
         facade=one.index,
-        image=image,
-        alpha=alpha,
-        evidence=rests_on,
+        image=straight.image,
+        alpha=straight.alpha,
+        evidence=straight.evidence,
         quad=corners,
-        photo_from_elevation=photo_from_elevation,
+        photo_from_elevation=straight.photo_from_elevation,
         vanishing_points=vanishing_points(corners, used, photo.frame),
         focal_px=focal,
         aspect=aspect,

@@ -78,17 +78,8 @@ def elevation(
     implausible = _implausible(photo, world, rank, corners, aspect)
     if implausible is not None:
         return _rejected(photo, facade, *implausible)
-    shape = warp.size(corners, aspect)
-    photo_from_elevation = warp.photo_from_elevation(corners, shape)
-    image, alpha, rests_on = warp.elevate(
-        photo.image,
-        facade.alpha,
-        facade.amodal,
-        photo_from_elevation,
-        shape,
-        frame=photo.frame,
-    )
-    beyond = float(np.mean(rests_on == evidence.BEYOND_FRAME))
+    straight = warp.straight(photo, facade, corners, aspect)
+    beyond = float(np.mean(straight.evidence == evidence.BEYOND_FRAME))
     if beyond > MOST_BEYOND:
         return _rejected(photo, facade, "mostly beyond the frame", f"{beyond:.0%}")
     prior = camera.prior_focal_px(photo.frame)
@@ -96,11 +87,11 @@ def elevation(
     points_px = _to_photo(photo, upright.vanishing_points(world.parameters))
     return Elevation(
         facade=facade.index,
-        image=image,
-        alpha=alpha,
-        evidence=rests_on,
+        image=straight.image,
+        alpha=straight.alpha,
+        evidence=straight.evidence,
         quad=corners,
-        photo_from_elevation=photo_from_elevation,
+        photo_from_elevation=straight.photo_from_elevation,
         vanishing_points=points_px[[rank + 1, 0]],
         focal_px=world.focal * prior if told else None,
         aspect=aspect,

@@ -6,13 +6,15 @@ torn beside a neighbour or at the ground, `BEYOND_FRAME` outside the frame. `NOT
 only what lies over the roof line (`skyline`).
 """
 
+from typing import NamedTuple
+
 import cv2
 import numpy as np
 from jaxtyping import Float, UInt8
 
 from nostalgin_core import evidence, homography
 from nostalgin_core.arrays import Alpha, Corners, Gray, Mask, Matrix3
-from nostalgin_core.records import Box
+from nostalgin_core.records import Box, Facade, Photo
 from nostalgin_core.rectify import skyline
 
 MOST_PX = 4096  # the longest side of an elevation: the largest atlas's side
@@ -42,6 +44,25 @@ def photo_from_elevation(quad: Corners, shape: tuple[int, int]) -> Matrix3:
     h, w = shape
     edges = np.array([[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]]) - 0.5
     return homography.between(edges, quad)
+
+
+class Straight(NamedTuple):
+    """A front straight on, as large as its quad calls for."""
+
+    photo_from_elevation: Matrix3
+    image: UInt8[np.ndarray, "eh ew"]
+    alpha: Float[np.ndarray, "eh ew"]
+    evidence: UInt8[np.ndarray, "eh ew"]
+
+
+def straight(photo: Photo, front: Facade, quad: Corners, aspect: float) -> Straight:
+    """Straighten a front by its quad, at the resolution that `size` chooses."""
+    shape = size(quad, aspect)
+    to_photo = photo_from_elevation(quad, shape)
+    pixels = elevate(
+        photo.image, front.alpha, front.amodal, to_photo, shape, frame=photo.frame
+    )
+    return Straight(to_photo, *pixels)
 
 
 def elevate(

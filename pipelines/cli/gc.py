@@ -4,7 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import JsonLines, Quiet
+from pipelines.cli.launch import City, JsonLines, Quiet
 from pipelines.console import Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
@@ -17,7 +17,7 @@ Examples:
 
 
 def gc_command(
-    city: Annotated[str, typer.Argument(help="The city folder.")],
+    city: City,
     *,
     keep: Annotated[
         int, typer.Option(min=0, help="Runs to keep beside the published one.")

@@ -22,6 +22,7 @@ ModelsFolder = Annotated[
     Path | None,
     typer.Option("--models", help="Folder with other networks and their models.lock."),
 ]
+City = Annotated[str, typer.Argument(help="The city folder.")]
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
 ]

@@ -9,6 +9,7 @@ import typer
 
 from pipelines.cli.launch import (
     TOO_MANY_REJECTIONS,
+    City,
     JsonLines,
     ModelsFolder,
     Quiet,
@@ -35,7 +36,7 @@ Examples:
 
 def reprocess_command(
     context: typer.Context,
-    city: Annotated[str, typer.Argument(help="The city folder.")],
+    city: City,
     *,
     dry_run: Annotated[
         bool,

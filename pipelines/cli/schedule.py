@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import JsonLines, ModelsFolder, Quiet
+from pipelines.cli.launch import City, JsonLines, ModelsFolder, Quiet
 from pipelines.cli.reprocess import redone
 from pipelines.console import Voice, errors
 
@@ -51,7 +51,7 @@ class Wall:
 
 def schedule_command(
     context: typer.Context,
-    city: Annotated[str, typer.Argument(help="The city folder.")],
+    city: City,
     *,
     cron: Annotated[str, typer.Option(help='When, as "17 3 * * *".')],
     zone: Annotated[str, typer.Option(help="The time zone of it.")] = "UTC",

@@ -24,6 +24,7 @@ app = typer.Typer(
 ModelsFolder = Annotated[
     Path | None, typer.Option("--models", help="Folder with other networks.")
 ]
+City = Annotated[Path, typer.Argument(help="A finished city of its photographs.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
@@ -203,7 +204,7 @@ def slips_command(
 @app.command("heights")
 def heights_command(
     data: Annotated[Path, typer.Argument(help="Holds storeys.csv, counted by eye.")],
-    city: Annotated[Path, typer.Argument(help="A finished city of its photographs.")],
+    city: City,
     *,
     as_json: AsJson = False,
 ) -> None:
@@ -220,7 +221,7 @@ def city_command(
     data: Annotated[
         Path, typer.Argument(help="Holds labels/, lots.json and storeys.csv.")
     ],
-    city: Annotated[Path, typer.Argument(help="A finished city of its photographs.")],
+    city: City,
     *,
     as_json: AsJson = False,
 ) -> None:
@@ -250,7 +251,7 @@ def views_command(
 @app.command("fronts")
 def fronts_command(
     data: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],
-    city: Annotated[Path, typer.Argument(help="A finished city of its photographs.")],
+    city: City,
     *,
     block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
     as_json: AsJson = False,

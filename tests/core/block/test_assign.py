@@ -3,24 +3,8 @@ from dataclasses import replace
 import pytest
 
 from nostalgin_core.block import assign
-from nostalgin_core.records import Assignment, Front, Rejection, Seen
-
-
-def front(lot: str, side: int, rank: int, *, address: str = "1") -> Front:
-    return Front(
-        front_id=f"9-{lot}-{side}",
-        block="9",
-        lot=lot,
-        ring=0,
-        side=side,
-        rank=rank,
-        street=f"street {side}",
-        address=address,
-        width_m=10.0,
-        depth_m=12.0,
-        width_assumed=False,
-    )
-
+from nostalgin_core.records import Assignment, Rejection, Seen
+from tests.core.listed import front, seen
 
 FRONTS = (
     front("a", 0, 0),
@@ -28,18 +12,7 @@ FRONTS = (
     front("b", 1, 2, address=""),
     front("c", 1, 3),
 )
-LEFT = Seen(
-    photo="p",
-    facade=0,
-    target=True,
-    target_score=0.9,
-    score=0.95,
-    aspect=0.8,
-    aspect_sd=0.05,
-    left_px=120.0,
-    area_px=60_000.0,
-    photographed=0.9,
-)
+LEFT = seen()
 RIGHT = replace(LEFT, facade=1, left_px=300.0)
 
 

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from typing import Any
 
 import pytest
 import shapely
@@ -7,25 +8,16 @@ from nostalgin_core import address
 from nostalgin_core.block import block, widths
 from nostalgin_core.block.cuboid import Shown
 from nostalgin_core.records import Front
+from tests.core import listed
 from tests.core import sample_block as sample
 
 
 def front(
     ring: int, side: int, lot: str, place: tuple[str, str], width_m: float
 ) -> Front:
-    return Front(
-        front_id=f"9-{lot}-{side}",
-        block="9",
-        lot=lot,
-        ring=ring,
-        side=side,
-        rank=side,
-        street=place[0],
-        address=place[1],
-        width_m=width_m,
-        depth_m=10.0,
-        width_assumed=False,
-    )
+    street, address = place
+    more: dict[str, Any] = {"street": street, "address": address, "depth_m": 10.0}
+    return listed.front(lot, side, side, ring=ring, width_m=width_m, **more)
 
 
 # Two rings that Broadway cuts apart: a wide one to the west, a narrow one to the east.

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -7,31 +8,12 @@ import shapely
 from nostalgin_core.block.chain import Footprint, Ring, chain
 from nostalgin_core.block.pieces import pieces, with_corners
 from nostalgin_core.records import Front
+from tests.core import listed
 
 
-def front(
-    side: int,
-    rank: int,
-    lot: str,
-    width_m: float,
-    *,
-    depth_m: float | None = 12.0,
-    address: str = "",
-    assumed: bool = False,
-) -> Front:
-    return Front(
-        front_id=f"9-{lot}-{side}",
-        block="9",
-        lot=lot,
-        ring=0,
-        side=side,
-        rank=rank,
-        street=f"street {side}",
-        address=address,
-        width_m=width_m,
-        depth_m=depth_m,
-        width_assumed=assumed,
-    )
+def front(side: int, rank: int, lot: str, width_m: float, **more: Any) -> Front:
+    plain: dict[str, Any] = {"address": "", "depth_m": 12.0}
+    return listed.front(lot, side, rank, width_m=width_m, **plain | more)
 
 
 # A block of 60 by 40 metres; lots a, c, e, g stand round its corners.
@@ -116,7 +98,9 @@ def test_no_two_buildings_overlap_whatever_the_widths(seed: int, count: int) -> 
 def test_fronts_stand_on_the_outline(seed: int) -> None:
     rng = np.random.default_rng(seed)
     fronts = [
-        front(side, 3 * side + k, f"{side}{k}", rng.uniform(5, 30), assumed=k == 1)
+        front(
+            side, 3 * side + k, f"{side}{k}", rng.uniform(5, 30), width_assumed=k == 1
+        )
         for side in range(4)
         for k in range(3)
     ]
@@ -139,7 +123,7 @@ def test_without_a_two_fronted_lot_the_ring_still_turns_and_closes() -> None:
 
 def test_a_measured_width_hardly_moves_where_an_assumed_one_gives_way() -> None:
     fronts = list(ROUND)
-    fronts[1] = front(0, 1, "b", 35.0, depth_m=14.0, assumed=True)
+    fronts[1] = front(0, 1, "b", 35.0, depth_m=14.0, width_assumed=True)
     fronts[7] = front(2, 7, "f", 18.0)
     placed = by_id(chain(fronts))
     assert abs(placed["9-c"].corners_m[1, 0] - placed["9-c"].corners_m[0, 0] - 15) < 0.5

@@ -1,30 +1,21 @@
 import csv
 from dataclasses import replace
+from typing import Any
 
 from nostalgin_core.block import corner
 from nostalgin_core.catalogue import catalogue, rings
 from nostalgin_core.records import Front
+from tests.core.listed import front
 from tests.data import DATA, needs_data
 
 
-def front(side: int, rank: int, lot: str, *, ring: int = 0, street: str = "") -> Front:
-    return Front(
-        front_id=f"9-{lot}-{side}",
-        block="9",
-        lot=lot,
-        ring=ring,
-        side=side,
-        rank=rank,
-        street=street or f"street {side}",
-        address=f"{100 + 2 * rank}",
-        width_m=10.0,
-        depth_m=14.0,
-        width_assumed=False,
-    )
+def numbered(side: int, rank: int, lot: str, **more: Any) -> Front:
+    number = f"{100 + 2 * rank}"
+    return front(lot, side, rank, address=number, depth_m=14.0, **more)
 
 
 FRONTS = tuple(
-    front(side, 3 * side + k, f"{side}{'abc'[k]}")
+    numbered(side, 3 * side + k, f"{side}{'abc'[k]}")
     for side in range(4)
     for k in range(3)
 )
@@ -68,11 +59,11 @@ def test_without_numbers_a_lot_seen_round_a_corner_moves_to_the_end_of_its_side(
 
 def test_a_lot_alone_on_its_side_takes_the_corner_that_is_left() -> None:
     few = (
-        front(0, 0, "a"),
-        front(0, 1, "b"),
-        front(1, 2, "c"),
-        front(2, 3, "d"),
-        front(3, 4, "e"),
+        numbered(0, 0, "a"),
+        numbered(0, 1, "b"),
+        numbered(1, 2, "c"),
+        numbered(2, 3, "d"),
+        numbered(3, 4, "e"),
     )
     turned = corner.with_corners(few, {"9-b", "9-c"})
     assert ids(turned)[1:5] == ["9-b-0", "9-b-1", "9-c-1", "9-c-2"]
@@ -90,7 +81,7 @@ def test_ranks_count_round_each_ring() -> None:
 
 
 def test_a_straight_row_has_no_corners() -> None:
-    row = tuple(front(0, k, f"{k}") for k in range(3))
+    row = tuple(numbered(0, k, f"{k}") for k in range(3))
     assert corner.with_corners(row, {"9-0", "9-2"}) == row
 
 

@@ -3,29 +3,12 @@
 from dataclasses import replace
 
 from nostalgin_core.block.lent import lent
-from nostalgin_core.records import Assignment, Front, Seen
+from nostalgin_core.records import Assignment
 from nostalgin_core.views import Claim
+from tests.core.listed import front, seen
 
-
-def front(lot: str, rank: int) -> Front:
-    width = {"width_m": 10.0, "depth_m": None, "width_assumed": False}
-    place = {"block": "9", "ring": 0, "side": 0, "street": "s", "address": ""}
-    return Front(front_id=f"9-{lot}-0", lot=lot, rank=rank, **place, **width)
-
-
-FRONTS = (front("a", 0), front("b", 1))
-OWN = Seen(
-    photo="a",
-    facade=0,
-    target=True,
-    target_score=0.9,
-    score=0.95,
-    aspect=0.8,
-    aspect_sd=0.05,
-    left_px=120.0,
-    area_px=60_000.0,
-    photographed=0.9,
-)
+FRONTS = (front("a", rank=0), front("b", rank=1))
+OWN = seen("a")
 BESIDE = replace(OWN, facade=1, target=False, target_score=0.02)
 GIVEN = Assignment("9-a-0", "a", 0, 0.5)
 TOLD = Claim("9-b-0", "a", 1, 0.9, "order")

@@ -9,30 +9,21 @@ import pytest
 
 from nostalgin_core.records import Front
 from nostalgin_core.views import Alike, Claim, Stretch, claimed
+from tests.core import listed
 
 WIDTHS_M = (7.6, 6.1, 15.2, 7.6, 9.1, 30.0, 6.1, 12.2)
-
-
-def front(lot: int, rank: int, side: int, width_m: float, address: str) -> Front:
-    return Front(
-        front_id=f"9-{lot}-{side}",
-        block="9",
-        lot=str(lot),
-        ring=0,
-        side=side,
-        rank=rank,
-        street=f"street {side}",
-        address=address,
-        width_m=width_m,
-        depth_m=None,
-        width_assumed=False,
-    )
 
 
 def ring(widths_m: Sequence[float] = WIDTHS_M) -> list[Front]:
     """Build a block with the same fronts on all four sides, odd numbers rising."""
     return [
-        front(10 * side + i, side * len(widths_m) + i, side, width_m, str(2 * i + 1))
+        listed.front(
+            str(10 * side + i),
+            side,
+            side * len(widths_m) + i,
+            width_m=width_m,
+            address=str(2 * i + 1),
+        )
         for side in range(4)
         for i, width_m in enumerate(widths_m)
     ]

@@ -16,7 +16,6 @@ from nostalgin_core.records import (
     Building,
     Front,
     Height,
-    Seen,
     Standpoint,
     Wall,
 )
@@ -25,6 +24,7 @@ from pipelines.site import camera, site
 from pipelines.site.folder import RECORD, Folder, Foreign
 from pipelines.site.publish import words_of, years
 from pipelines.site.record import record as recorded
+from tests.core import listed
 
 WEBP = site.thumbnail(np.zeros((40, 30), np.uint8))
 
@@ -167,19 +167,8 @@ def test_thumbnails_never_grow() -> None:
 
 
 def front(side: int, *, rank: int, width_m: float) -> Front:
-    return Front(
-        front_id=f"993-11-{side}",
-        block="993",
-        lot="11",
-        ring=0,
-        side=side,
-        rank=rank,
-        street=f"Street {side}",
-        address="1",
-        width_m=width_m,
-        depth_m=None,
-        width_assumed=False,
-    )
+    block, street = "993", f"Street {side}"
+    return listed.front("11", side, rank, block=block, street=street, width_m=width_m)
 
 
 def corner() -> Block:
@@ -258,18 +247,7 @@ def test_only_a_web_page_is_handed_on_as_a_record() -> None:
 
 
 def told(**more: Any) -> dict[str, Any]:
-    seen = Seen(
-        photo="ab",
-        facade=0,
-        target=True,
-        target_score=1.0,
-        score=1.0,
-        aspect=0.5,
-        aspect_sd=0.01,
-        left_px=0.0,
-        area_px=1e5,
-        photographed=0.8,
-    )
+    seen = listed.seen("ab", aspect=0.5, aspect_sd=0.01, photographed=0.8)
     known = recorded(
         corner(),
         fronts=[front(1, rank=1, width_m=30.0), front(0, rank=0, width_m=10.0)],
