@@ -5,7 +5,7 @@ A stage of the core is a transform here; whom to tell, it is given. Open `city` 
 """
 
 import pipelines.build.lean  # noqa: F401 - before all that loads Beam
-from pipelines.build.boards import boards
+from pipelines.build.boards import boards, boards_read
 from pipelines.build.build import (
     Tell,
     Watch,
@@ -33,6 +33,7 @@ from pipelines.build.prepared import (
 )
 from pipelines.build.report import Lost, Report
 from pipelines.build.streets import Streets
+from pipelines.build.took import Took
 
 __all__ = [
     "DIRECTED",
@@ -43,11 +44,13 @@ __all__ = [
     "Report",
     "Streets",
     "Tell",
+    "Took",
     "Unrun",
     "Watch",
     "anchored",
     "bench_of",
     "boards",
+    "boards_read",
     "build",
     "carried_out",
     "corrected",

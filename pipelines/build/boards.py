@@ -7,6 +7,7 @@ kept where `build` looks for it, so that nothing is segmented twice; what was re
 board is an artifact too, whatever list it is joined with.
 """
 
+import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -168,17 +169,53 @@ def heard(row: Mapping[str, str], bench: Bench) -> Heard:
         return Heard(why=f"{row['reason']}: {row['detail']}")
     path = path_of(row["sha256"], bench)
     try:
-        (cells,) = bench.store.read_table(path, ["found", "looks"]).to_pylist()
+        return kept(row["sha256"], path, bench.store)
     except (Damaged, FileNotFoundError):
         bench.store.drop(path)
         return Heard(why="what was read of its board is damaged: index once more")
+
+
+def kept(sha256: str, path: str, store: Store) -> Heard:
+    """Read the artifact of one photo's board.
+
+    Raises:
+        FileNotFoundError: if there is none.
+        Damaged: if it is not what was written.
+    """
+    (cells,) = store.read_table(path, ["found", "looks"]).to_pylist()
     looks = (placard.Look(tuple(map(tuple, lines))) for lines in cells["looks"])
     return Heard(
-        key=row["sha256"][:16],
+        key=sha256[:16],
         found=cells["found"],
         looks=tuple(looks),
-        picture=partial(picture, bench.store, path),
+        picture=partial(picture, store, path),
     )
+
+
+def boards_read(
+    options: PipelineOptions, root: str, names: Sequence[str]
+) -> Mapping[str, Heard]:
+    """Tell what is kept of boards that were looked at before, and write nothing.
+
+    Raises:
+        Unlocked: if a network's file is not what its lock says.
+    """
+    ours = options.view_as(CityOptions)
+    bench = bench_of(ours, Store(ours.city))
+    found: dict[str, Heard] = {}
+    for name in names:
+        try:
+            data = Store(root).read_bytes(name)
+            sha256 = hashlib.sha256(data).hexdigest()
+            path = path_of(sha256, bench)
+            verdict = bench.store.verdict(path)
+            if isinstance(verdict, Rejection):
+                found[name] = Heard(why=f"{verdict.reason}: {verdict.detail}")
+            else:
+                found[name] = kept(sha256, path, bench.store)
+        except (Damaged, OSError):
+            found[name] = Heard(why="its board is still to be read")
+    return found
 
 
 def picture(store: Store, path: str) -> bytes:

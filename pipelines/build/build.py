@@ -18,7 +18,7 @@ from pipelines.build.city import Built, city
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
 from pipelines.build.launched import launched
-from pipelines.build.noted import note, stages
+from pipelines.build.noted import cpu_s, note, stages
 from pipelines.build.options import CityOptions, part
 from pipelines.build.prepared import Prepared, prepared
 from pipelines.build.report import (
@@ -118,9 +118,9 @@ def carried_out(
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()
-    noted = partial(
-        note, store, run, bench.versions, options, began, told_of=asked_for.told_of
-    )
+    expected = {"estimated": asked_for.expected} if asked_for.expected else {}
+    told_of = {**asked_for.told_of, **expected}
+    noted = partial(note, store, run, bench.versions, options, began, told_of=told_of)
     noted()  # a folder that can't be written to is told now
     watched = watch if "://" not in store.root else unwatched
     again = 0
@@ -133,6 +133,7 @@ def carried_out(
         told = noted(done=done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
+        report = replace(report, cpu_seconds=told["cpu_seconds"])
         if shard != (1, 1) or not report.blocks:
             metered(store, told, ours.shard)
             return report
@@ -159,9 +160,10 @@ def made_alone(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> R
     with watched(partial(bench.versions.counts, store.root), asked_for.todo.photos):
         result = launched(options, partial(wired, asked_for), store)
     check(store, work.run, bench.versions)
-    again = sum(one.get("healed", 0) for one in stages(result).values())
+    done = stages(result).values()
+    again = sum(one.get("healed", 0) for one in done)
     report = replace(reported(store, work.run, work), healed=again)
-    report = replace(report, run=asked_for.todo.run)
+    report = replace(report, run=asked_for.todo.run, cpu_seconds=cpu_s(done))
     tidied(store, bench.versions)
     return report
 

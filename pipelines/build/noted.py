@@ -33,13 +33,13 @@ def note(
     options: PipelineOptions,
     began: float,
     *,
-    told_of: Mapping[str, str] | None = None,
+    told_of: Mapping[str, Any] | None = None,
     done: dict[str, dict[str, Any]] | None = None,
 ) -> dict[str, Any]:
     """Write when the run was and what it took, and give what was written.
 
     Until the run is done it tells only when it began. `told_of` are hashes of what it
-    was told.
+    was told, and what it was estimated to cost.
     """
     given = options.get_all_options(drop_default=True)
     told: dict[str, Any] = {
@@ -52,6 +52,7 @@ def note(
     if done is not None:
         told |= {"seconds": round(time.time() - began, 1), "stages": done}
         told["memory_mb"] = memory_mb(done.values())
+        told["cpu_seconds"] = cpu_s(done.values())
     text = json.dumps(told, indent=1, sort_keys=True) + "\n"
     store.write_bytes(f"runs/{run}/run.json", text.encode())
     return told
@@ -60,6 +61,11 @@ def note(
 def harmless(name: str, value: str) -> str:
     """Tell an option's value, unless it may be a secret."""
     return UNTOLD if SECRET.search(name) or TELLING.search(value) else value
+
+
+def cpu_s(stages: Iterable[dict[str, Any]]) -> float:
+    """Sum up the CPU seconds of all stages."""
+    return round(sum(one.get("cpu_milliseconds", 0) for one in stages) / 1000, 1)
 
 
 def memory_mb(stages: Iterable[dict[str, Any]]) -> dict[str, int]:

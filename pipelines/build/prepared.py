@@ -4,8 +4,8 @@ import json
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Final
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
 
 from pipelines import index, site
 from pipelines.build.bench import Bench
@@ -36,6 +36,7 @@ class Prepared:
     redone: Asked | None = None  # what the pipeline is to do, unless it is all
     settle: Callable[[], None] = lambda: None  # puts what was not redone beside it
     trusting: bool = False  # that what stands in the site is what we wrote there
+    expected: Mapping[str, Any] = field(default_factory=dict)  # what it was to cost
 
     @property
     def work(self) -> Asked:

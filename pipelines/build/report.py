@@ -64,6 +64,7 @@ class Report:
     fronts: int = 0
     widths_assumed: int = 0  # of the fronts: no list gave them
     heights_assumed: int = 0  # of the buildings: nothing supports them
+    cpu_seconds: float = 0.0  # that the stages spent
 
     @property
     def rejected_share(self) -> float:

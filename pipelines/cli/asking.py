@@ -20,9 +20,18 @@ class Whose(StrEnum):
 
 
 def asking(
-    city: str, whose: Whose, voice: Voice, *, models: str, beam: Sequence[str]
+    city: str,
+    whose: Whose,
+    voice: Voice,
+    *,
+    models: str,
+    beam: Sequence[str],
+    dry: bool = False,
 ) -> "Ask | None":
-    """Say whose boards are looked at; Beam's options are looked at now."""
+    """Say whose boards are looked at; Beam's options are looked at now.
+
+    `dry`, of boards that nobody looked at yet nothing is told, and nothing is written.
+    """
     from pipelines.index import Ask
 
     if beam:
@@ -35,6 +44,8 @@ def asking(
         from pipelines import build
         from pipelines.models import Unlocked
 
+        if dry:
+            return build.boards_read(options, root, names)
         words = f"looking at the boards of {len(names)} photos"
         voice.say("boards", words, photos=len(names))
         plain = (Unlocked, build.Lost, build.Unrun)

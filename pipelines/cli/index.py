@@ -113,14 +113,16 @@ def index_command(
     from pipelines import index
 
     voice = Voice(errors, machine=json_lines, quiet=quiet)
-    told = index.Asked(outlines, outline_key, outline_crs, places, place, streets)
     shelf = {"models": str(models or ""), "beam": context.args}
     ask = asking(city, boards, voice, **shelf)
+    told = {"outline_key": outline_key, "outline_crs": outline_crs, "place": place}
+    told |= {"credit": credit, "title": title, "blocks": tuple(block or ())}
+    files = {"catalogue": catalogue, "outlines": outlines, "places": places}
+    files |= {"streets": streets, "profile": profile}
+    wish = index.Wish.told(photos, boards=boards.value, **files, **told)
 
     def work() -> "Indexed":
-        chosen = {"blocks": block or (), "force": force, "places": told, "ask": ask}
-        named = {"credit": credit, "title": title, "archive": index.profile(profile)}
-        return index.index(photos, catalogue, city, **chosen, **named, tell=voice.say)
+        return index.fulfilled(wish, city, ask=ask, force=force, tell=voice.say)
 
     made = kept_from_others(city, work)
     indexed(made, city, voice)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from pipelines.cli.grown import indexed_again, indexed_dry
 from pipelines.cli.launch import (
     TOO_MANY_REJECTIONS,
     City,
@@ -51,24 +52,29 @@ def reprocess_command(
     rollback: Annotated[
         str, typer.Option(metavar="RUN", help="Show this kept run again; redo nothing.")
     ] = "",
+    index: Annotated[
+        bool, typer.Option(help="Index a folder again that is not what it was.")
+    ] = True,
     models: ModelsFolder = None,
     json_lines: JsonLines = False,
     quiet: Quiet = False,
 ) -> None:
     """Redo what is stale: new, changed and removed photos, corrections, new versions.
 
-    Blocks that none of this touches stay as they are, and are not opened.
+    Where the folder of photographs or the list is not what it was when it was indexed,
+    it is indexed again first. Blocks that none of this touches stay as they are, and
+    are not opened.
     """
     if rollback:
         if dry_run or thorough or budget or context.args:
             raise typer.BadParameter("--rollback takes no other options of a run")
         again(city, rollback, Voice(errors, machine=json_lines, quiet=quiet))
         return
-    asked = {"budget": budget, "thorough": thorough}
-    if dry_run:
-        tell(looked(city, str(models or ""), **asked), machine=json_lines)
-        return
+    asked = {"budget": budget, "thorough": thorough, "index": index}
     voice = Voice(errors, machine=json_lines, quiet=quiet)
+    if dry_run:
+        tell(looked(city, voice, str(models or ""), **asked), machine=json_lines)
+        return
     done = redone(city, voice, str(models or ""), context.args, **asked)
     if done.report is not None and done.report.held:
         raise typer.Exit(TOO_MANY_REJECTIONS)
@@ -91,10 +97,18 @@ def again(city: str, run: str, voice: Voice) -> None:
 
 
 def redone(
-    city: str, voice: Voice, models: str, beam: Sequence[str], **asked: Any
+    city: str,
+    voice: Voice,
+    models: str,
+    beam: Sequence[str],
+    *,
+    index: bool = True,
+    **asked: Any,
 ) -> "Reprocessed":
     """Redo what is stale, and tell what came of it or what went wrong."""
     options = told(city, models=models, beam=beam)
+    if index:
+        indexed_again(city, voice, models, beam)
     from pipelines import reprocess
 
     with failing(city):
@@ -107,12 +121,24 @@ def redone(
         later = done.plan.later
         words = f"; {later} stale photographs are left for the next time"
         counts = f"{done.plan.photos} photographs and {done.plan.blocks} blocks redone"
-        voice.say("reprocessed", counts + words * bool(later), **done.plan.told())
+        known = done.plan.told() | {"spent_cpu_seconds": done.report.cpu_seconds}
+        counts += spent(done.plan.cpu_seconds, done.report.cpu_seconds)
+        voice.say("reprocessed", counts + words * bool(later), **known)
         summed(done.report, voice)
     return done
 
 
-def looked(city: str, models: str, **asked: Any) -> "Plan":
+def spent(estimated: float | None, cpu_s: float) -> str:
+    """Tell what was spent, and how far an estimate was from it."""
+    said = f", {cpu_s:.1f} CPU s"
+    if not estimated:
+        return said
+    return f"{said}, {cpu_s / estimated:.2f} of the estimated {estimated:.1f}"
+
+
+def looked(
+    city: str, voice: Voice, models: str, *, index: bool = True, **asked: Any
+) -> "Plan":
     """Find what is stale, or tell why that can't be."""
     from pipelines import reprocess
     from pipelines.index.manifest import Unusable
@@ -123,7 +149,9 @@ def looked(city: str, models: str, **asked: Any) -> "Plan":
         raise typer.BadParameter("credentials in the URI: give them by the environment")
     try:
         networks = Models(models) if models else Models()
-        return reprocess.planned(reprocess.now(Store(city), networks), **asked)
+        there = indexed_dry(city, voice, models) if index else None
+        now = reprocess.now(Store(city), networks, there=there)
+        return reprocess.planned(now, **asked)
     except (Unusable, Unlocked, Damaged) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:

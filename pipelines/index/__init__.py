@@ -4,6 +4,15 @@ In: files and CSV. Out: `manifest.csv` and `.parquet`; then photos and blocks to
 Open `index` first, then `manifest`.
 """
 
+from pipelines.index.again import (
+    Kept,
+    Wish,
+    drafted,
+    fulfilled,
+    known,
+    outdated,
+    renewed,
+)
 from pipelines.index.anchors import Anchors, Asked, keep, load, told_of_places
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
@@ -17,12 +26,19 @@ __all__ = [
     "Asked",
     "Heard",
     "Indexed",
+    "Kept",
     "Nothing",
+    "Wish",
     "cleaned",
+    "drafted",
+    "fulfilled",
     "index",
     "keep",
+    "known",
     "load",
     "of_folder",
+    "outdated",
     "profile",
+    "renewed",
     "told_of_places",
 ]

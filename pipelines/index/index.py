@@ -3,9 +3,9 @@
 import os
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Catalogue, Entry
@@ -52,6 +52,16 @@ class Indexed:
         return len(self.without_front) > MOST_HOMELESS * self.photos
 
 
+@dataclass(frozen=True)
+class Draft:
+    """A manifest that is yet to be written, and what is written beside it."""
+
+    encoded: tuple[bytes, bytes]  # CSV, Parquet
+    files: Mapping[str, bytes]  # what was told of places, by name in the city folder
+    heard: Hearing
+    indexed: Indexed
+
+
 def index(
     photos: str | Path,
     listed: str | Path | None,
@@ -79,13 +89,37 @@ def index(
     Raises:
         Nothing: if there is no photo, no row that makes sense, or mended ones to lose.
     """
-    own, store = archive or profile(USUAL), Store(city)
-    ask = with_boards(ask, own)
+    store = Store(city)
     mended = replaceable(store, credit, force=force)
+    named = {"credit": credit, "title": title, "places": places}
+    asked = {"blocks": blocks, "ask": ask, "archive": archive, "tell": tell}
+    return put(store, draft(photos, listed, city, **named, **asked), mended)
+
+
+def draft(
+    photos: str | Path,
+    listed: str | Path | None,
+    city: str,
+    *,
+    blocks: Sequence[str] = (),
+    credit: str = "",
+    title: str = "",
+    places: Asked | None = None,
+    ask: Ask | None = None,
+    archive: Profile | None = None,
+    tell: lists.Tell = lists.silent,
+) -> Draft:
+    """Make a manifest as `index` does, and write none of it.
+
+    Raises:
+        Nothing: if there is no photo, or no row that makes sense.
+    """
+    own = archive or profile(USUAL)
+    ask = with_boards(ask, own)
     folder, given = lists.opened(photos, listed, city, naming=own.naming, tell=tell)
     names, unnamed = images(folder, city)
     root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
-    heard, read = first_heard(given, names, folder, ask, own)
+    heard, read = first_heard(given, names, Path(root), ask, own)
     beside = told_by(given, read.entries)
     lots = lots_of(read, blocks, Path(listed or photos), own)
     files, placeless = taken(places or Asked(), lots.blocks)
@@ -95,13 +129,27 @@ def index(
         shown, strangers = placed(heard, shown, strangers, lots.entries)
     rows, homeless = paired(names, shown, lots.fronts, every=not blocks)
     cells = cells_of(rows, shown, beside, lots.entries, root=root, credit=credit)
-    kept = [] if mended is None else [copied(store, *mended)]
-    written(store, cells, title, files, heard)
+    columns = {column for row in cells for column in row} - {*manifest.SCHEMA.names}
+    encoded = manifest.encoded(cells, title=cleaned(title), kept=columns)
     unlisted = () if blocks else strangers
     wrong = (*unnamed, *read.rejections, *lots.crowded, *unlisted)
     doubts = (*lots.said, *beside.warnings, *lots.doubts, *placeless, *heard.doubts())
-    told = {"rejections": wrong, "warnings": (*doubts, *kept)}
-    return indexed(rows, homeless, lots, heard, **told)
+    told = {"rejections": wrong, "warnings": doubts}
+    return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **told))
+
+
+def put(store: Store, made: Draft, mended: tuple[str, bytes] | None) -> Indexed:
+    """Write a manifest, what is told of places, and what each witness said.
+
+    Of a manifest that was `mended` a copy is kept.
+    """
+    kept = [] if mended is None else [copied(store, *mended)]
+    manifest.put(store, made.encoded)
+    for name, data in made.files.items():
+        store.write_bytes(name, data)
+    readings.write(store, pictured(store, made.heard))
+    told = made.indexed
+    return replace(told, warnings=(*told.warnings, *kept))
 
 
 def first_heard(
@@ -118,24 +166,8 @@ def first_heard(
     """
     if given is not None:
         return Hearing(), from_list(given, own.naming)
-    root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
-    heard = without_list(names, ask, root, own)
+    heard = without_list(names, ask, str(folder), own)
     return heard, from_names(names, folder, heard.keys())
-
-
-def written(
-    store: Store,
-    cells: list[dict[str, Any]],
-    title: str,
-    files: Mapping[str, bytes],
-    heard: Hearing,
-) -> None:
-    """Write a manifest, what is told of places, and what each witness said."""
-    columns = {column for row in cells for column in row} - {*manifest.SCHEMA.names}
-    manifest.write(store, cells, title=cleaned(title), kept=columns)
-    for name, data in files.items():
-        store.write_bytes(name, data)
-    readings.write(store, pictured(store, heard))
 
 
 def indexed(

@@ -78,17 +78,37 @@ def found(store: Store) -> Source:
     csv, parquet = optional(store, CSV), optional(store, PARQUET)
     title, kept = "", tuple[str, ...]()
     if parquet is not None:
-        told = opened(parquet, store.root).schema_arrow.metadata or {}
-        title = told.get(TITLE, b"").decode(errors="replace")
-        with contextlib.suppress(ValueError, TypeError):  # they are warned of, then
-            kept = tuple(map(str, json.loads(told.get(KEPT, b"[]"))))
-        mark = told.get(CSV_HASH, b"").decode(errors="replace")
+        there = of_parquet(parquet, store.root)
+        mark = marks(parquet, store.root).get(CSV_HASH, b"").decode(errors="replace")
         if csv is None or hashlib.sha256(csv).hexdigest() == mark:
-            return Source(store.root, PARQUET, parquet, title, kept=kept)
+            return there
+        title, kept = there.title, there.kept
     if csv is None:
         raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     mended = parquet is not None
     return Source(store.root, CSV, csv, title, mended=mended, kept=kept)
+
+
+def of_parquet(data: bytes, where: str) -> Source:
+    """Take the Parquet form of a manifest, written or yet to be.
+
+    Raises:
+        Unusable: if it makes no sense.
+    """
+    told, kept = marks(data, where), tuple[str, ...]()
+    title = told.get(TITLE, b"").decode(errors="replace")
+    with contextlib.suppress(ValueError, TypeError):  # they are warned of, then
+        kept = tuple(map(str, json.loads(told.get(KEPT, b"[]"))))
+    return Source(where, PARQUET, data, title, kept=kept)
+
+
+def marks(data: bytes, where: str) -> dict[bytes, bytes]:
+    """Read what the Parquet form tells beside its rows.
+
+    Raises:
+        Unusable: if it is none.
+    """
+    return opened(data, where).schema_arrow.metadata or {}
 
 
 def optional(store: Store, name: str) -> bytes | None:

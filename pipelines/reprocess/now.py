@@ -58,8 +58,16 @@ class Now:
         yield from asked.told_as(sorting.each(results))
 
 
-def now(store: Store, models: Models, *, schemes: Sequence[str] = ()) -> Now:
+def now(
+    store: Store,
+    models: Models,
+    *,
+    schemes: Sequence[str] = (),
+    there: Source | None = None,
+) -> Now:
     """Read what is asked for; a manifest that was mended is read as a build would.
+
+    `there` is a manifest that is yet to be written.
 
     Options that change what comes of a run are those of the run that is shown.
 
@@ -67,7 +75,7 @@ def now(store: Store, models: Models, *, schemes: Sequence[str] = ()) -> Now:
         Unusable: if it can't be read.
         Unlocked: if a network has no lock.
     """
-    there = source.found(store)
+    there = there or source.found(store)
     manifest.noticed(there)
     if there.mended:
         found = manifest.read(store)

@@ -64,6 +64,12 @@ class Plan:
         """Read the rows that are asked for."""
         return self.now.tables(self.before)
 
+    def expected(self) -> dict[str, Any]:
+        """Give what it is estimated to cost, if that is known."""
+        if self.cpu_seconds is None:
+            return {}
+        return {"cpu_seconds": self.cpu_seconds, "seconds": self.seconds}
+
     def told(self) -> dict[str, Any]:
         """Give the plan as plain values."""
         causes = {name: self.stale.count(name) for name in CAUSES}
@@ -151,12 +157,12 @@ def cost(
     count = int((anew & mine).sum())
     for stage in PHOTO_STAGES:
         made[stage] = made.get(stage, 0) + count
-    made["inpaint"] = made.get("inpaint", 0) + round(
-        count * (known.facades if known else 1.0)
-    )
+    of_photo = dict(known.of_photo) if known else {"inpaint": 1.0}
+    for stage, each in of_photo.items():
+        made[stage] = made.get(stage, 0) + round(count * each)
     digests = np.array(sorted(found.side.digests), np.uint64)
     made["block"] = int(np.isin(digests, redone).sum())
     if known is None:
         return made, None, None
-    cpu_s = known.cpu(made)
-    return made, round(cpu_s, 1), round(cpu_s * known.wall_per_cpu / max(workers, 1), 1)
+    cpu_s = known.cpu(made | {"assign": made["block"]})
+    return made, round(cpu_s, 1), round(known.clock(cpu_s, max(workers, 1)), 1)

@@ -123,17 +123,16 @@ def prepared(plan: Plan, ours: CityOptions, run: str = "") -> Prepared:
         else:
             index.keep(store, f"runs/{name}")
         if plan.all_redone or not (plan.later or merged.complete(store, before.run)):
-            return Prepared(bench, todo, told.mended, told.anchors, told_of)
+            whole = (bench, todo, told.mended, told.anchors, told_of)
+            return Prepared(*whole, expected=plan.expected())
     parts = runs.parts_of(todo.rows)
     of_run = f"{name}/{runs.REDONE}"
     redone = written(
         store, of_run, selected(plan.rows(), plan.redone), told.there.title
     )
     settle = partial(merged.merge, store, name, before.run, parts, plan.redone)
-    trusting = plan.same_small
-    return Prepared(
-        bench, todo, told.mended, told.anchors, told_of, redone, settle, trusting
-    )
+    whole = (bench, todo, told.mended, told.anchors, told_of, redone, settle)
+    return Prepared(*whole, trusting=plan.same_small, expected=plan.expected())
 
 
 def named(plan: Plan) -> str:
