@@ -9,6 +9,9 @@ grows least, with n the direction from c to p, o the rings' middle, J a quarter 
 and t small: point-to-line iterated closest points (Chen and Medioni 1992), reweighted
 by w(d) = 1 / (1 + (d / s)^2) with a shrinking s. So a side that a map cuts off, a yard
 that is open to the street or a building that the list does not know pulls at nothing.
+
+All first turns go their rounds together. The outline is held against the rings in the
+rings' own frame, where their sides stand still; there points are complex, x + iy.
 """
 
 from collections.abc import Sequence
@@ -16,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from nostalgin_core.city.plot import Move, Vector, about, carried
 
@@ -32,6 +35,10 @@ FAR_M = 10.0  # beyond, one counts no more
 Segments = Float[np.ndarray, "s 2 2"]
 Part = Float[np.ndarray, "_ 2"]
 Spots = Float[np.ndarray, "p 2"]
+Ways = Complex[np.ndarray, " s"]
+Turns = Float[np.ndarray, " t"]
+Shifts = Complex[np.ndarray, " t"]
+Seen = Complex[np.ndarray, "t p"]  # an outline's points from each pose of the rings
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +49,17 @@ class Fit:
     misfit_m: float  # from the outline to the rings, in the median
     agreeing: float  # share of the outline that a ring passes
     cost_m: float  # mean distance, none counted beyond `FAR_M`
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sides:
+    """The rings' sides in their own frame, and what each round asks of them."""
+
+    start: Ways
+    way: Ways  # from start to end
+    share: Ways  # times what a point is off the start: how far along it is, really
+    across: Ways  # the normal
+    middle: complex
 
 
 def fit(
@@ -57,7 +75,8 @@ def fit(
     if not turns_rad or not len(rings_m) or not len(outline_m):
         raise ValueError("no rings, no outline or no turn to begin with")
     sides, points = _sides(rings_m), along(outline_m)
-    found = [_settled(sides, points, turn) for turn in turns_rad]
+    first = [about(turn, *_boxed(sides, points, turn)) for turn in turns_rad]
+    found = _settled(sides, points, first)
     return sorted(found, key=lambda one: one.cost_m)
 
 
@@ -112,27 +131,51 @@ def _sides(rings_m: Sequence[Part]) -> Segments:
     return np.concatenate(sides)
 
 
-def _settled(sides: Segments, points: Spots, turn_rad: float) -> Fit:
-    move = about(turn_rad, *_boxed(sides, points, turn_rad))
+def _settled(sides: Segments, points: Spots, first: Sequence[Move]) -> list[Fit]:
+    whole, spots = _whole(sides), _complex(points)
+    turn = np.array([one.turn_rad for one in first])
+    shift = np.array([complex(one.east_m, one.north_m) for one in first])
     for reach in REACHES_M:
+        moving = np.arange(len(first))
         for _ in range(ROUNDS):
-            before = move
-            move = _nearer(move, sides, points, reach)
-            if _same(before, move):
+            seen = _seen(spots, turn[moving], shift[moving])
+            by, own = _step(whole, seen, reach)
+            to = own * np.exp(1j * turn[moving])
+            turn[moving] += by
+            shift[moving] += to
+            far = np.abs(to.real) + np.abs(to.imag) >= STILL_M
+            moving = moving[far | (np.abs(by) >= STILL_RAD)]
+            if not len(moving):
                 break
-    apart = np.linalg.norm(points - _closest(_there(move, sides), points)[0], axis=1)
-    return Fit(
-        move,
-        misfit_m=float(np.median(apart)),
-        agreeing=float((apart < NEAR_M).mean()),
-        cost_m=float(np.minimum(apart, FAR_M).mean()),
+    apart = np.abs(_gaps(whole, _seen(spots, turn, shift))[0])
+    return [
+        Fit(
+            Move(float(by), float(to.real), float(to.imag)),
+            misfit_m=float(np.median(off)),
+            agreeing=float((off < NEAR_M).mean()),
+            cost_m=float(np.minimum(off, FAR_M).mean()),
+        )
+        for by, to, off in zip(turn, shift, apart, strict=True)
+    ]
+
+
+def _whole(sides: Segments) -> _Sides:
+    start, end = _complex(sides).T
+    way = end - start
+    square = np.maximum(np.abs(way) ** 2, 1e-12)
+    across = -1j * way / np.sqrt(square)
+    return _Sides(
+        start, way, way.conj() / square, across, complex((start + end).mean() / 2)
     )
 
 
-def _same(a: Move, b: Move) -> bool:
-    """Tell whether a step was too small to go on."""
-    shift = abs(a.east_m - b.east_m) + abs(a.north_m - b.north_m)
-    return abs(a.turn_rad - b.turn_rad) < STILL_RAD and shift < STILL_M
+def _complex(points: Float[np.ndarray, "*_ 2"]) -> Complex[np.ndarray, "*_"]:
+    return points[..., 0] + 1j * points[..., 1]
+
+
+def _seen(spots: Complex[np.ndarray, " p"], turn: Turns, shift: Shifts) -> Seen:
+    """Carry an outline's points back to the rings' frame, from each of their poses."""
+    return (spots - shift[:, None]) * np.exp(-1j * turn)[:, None]
 
 
 def _boxed(sides: Segments, points: Spots, turn_rad: float) -> tuple[Vector, Vector]:
@@ -144,38 +187,29 @@ def _boxed(sides: Segments, points: Spots, turn_rad: float) -> tuple[Vector, Vec
     return (own.min(axis=0) + own.max(axis=0)) / 2, middle @ there
 
 
-def _nearer(move: Move, sides: Segments, points: Spots, reach_m: float) -> Move:
-    placed = _there(move, sides)
-    touched, across = _closest(placed, points)
-    gap = points - touched
-    apart = np.linalg.norm(gap, axis=1)
-    direction = np.where(
-        apart[:, None] > 1e-9, gap / np.maximum(apart, 1e-9)[:, None], across
-    )
-    middle = placed.reshape(-1, 2).mean(axis=0)
-    arm = touched - middle
-    turned = np.column_stack([-arm[:, 1], arm[:, 0]])
-    slope = np.column_stack([(direction * turned).sum(axis=1), direction])
-    weight = 1.0 / (1.0 + (apart / reach_m) ** 2)
-    normal = slope.T @ (slope * weight[:, None])
-    normal += 1e-9 * np.trace(normal) * np.eye(3)  # where nothing tells, stay
-    step = np.linalg.solve(normal, slope.T @ (weight * apart))
-    origin = carried(move, np.zeros((1, 2)))[0]
-    lever = carried(Move(float(step[0])), (origin - middle)[None])[0]
-    shift = middle + lever + step[1:]
-    return Move(move.turn_rad + float(step[0]), float(shift[0]), float(shift[1]))
+def _step(sides: _Sides, seen: Seen, reach_m: float) -> tuple[Turns, Shifts]:
+    """Find by how much to turn and to shift the rings, in their own frame."""
+    gap, across = _gaps(sides, seen)
+    apart = np.abs(gap)
+    direction = np.divide(gap, apart, out=across, where=apart > 1e-9)
+    arm = seen - gap - sides.middle
+    slope = np.empty((len(seen), 3, seen.shape[1]))
+    slope[:, 1], slope[:, 2] = np.real(direction), np.imag(direction)
+    slope[:, 0] = slope[:, 2] * np.real(arm) - slope[:, 1] * np.imag(arm)
+    pull = slope / (1.0 + (apart / reach_m) ** 2)[:, None]
+    normal = pull @ slope.swapaxes(1, 2)
+    size = np.trace(normal, axis1=1, axis2=2)[:, None, None]
+    normal += 1e-9 * size * np.eye(3)  # where nothing tells, stay
+    step = np.linalg.solve(normal, pull @ apart[:, :, None])[..., 0]
+    lever = sides.middle - sides.middle * np.exp(1j * step[:, 0])
+    return step[:, 0], lever + _complex(step[:, 1:])
 
 
-def _there(move: Move, sides: Segments) -> Segments:
-    return carried(move, sides.reshape(-1, 2)).reshape(-1, 2, 2)
-
-
-def _closest(sides: Segments, points: Spots) -> tuple[Spots, Spots]:
-    """Find the nearest point of any side to each point, and that side's normal."""
-    start, way = sides[:, 0], sides[:, 1] - sides[:, 0]
-    long = np.maximum((way**2).sum(axis=1), 1e-12)
-    share = np.einsum("psk,sk->ps", points[:, None] - start, way) / long
-    on = start + np.clip(share, 0.0, 1.0)[..., None] * way
-    best = np.argmin(((points[:, None] - on) ** 2).sum(axis=2), axis=1)
-    normal = np.column_stack([way[:, 1], -way[:, 0]]) / np.sqrt(long)[:, None]
-    return on[np.arange(len(points)), best], normal[best]
+def _gaps(sides: _Sides, seen: Seen) -> tuple[Seen, Seen]:
+    """Find the way from the nearest point of any side to each point; and its normal."""
+    off = seen[..., None] - sides.start
+    share = np.clip(np.real(off * sides.share), 0.0, 1.0)
+    gap = (off - share * sides.way).reshape(-1, len(sides.way))
+    best = np.argmin(np.real(gap) ** 2 + np.imag(gap) ** 2, axis=1)
+    least = gap[np.arange(len(best)), best]
+    return least.reshape(seen.shape), sides.across[best].reshape(seen.shape)

@@ -3,20 +3,34 @@
 A town of numbered streets and avenues is laid out by its streets alone. Each time is
 told as a ratio to the smallest town's, with the exponent p of n^p between neighbours:
 n log n has about 1.1 here, a loop over pairs 2.
+
+Then the smallest town is laid into ragged outlines of its blocks, with streets in
+common and without (so that all four quarter turns are tried). Baseline: the same by the
+tests' slow oracle, a turn at a time.
 """
 
 import math
 import sys
 import time
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
+import shapely
 
 from nostalgin_core import city
-from nostalgin_core.city.plot import Border, Plot
+from nostalgin_core.city import anchor
+from nostalgin_core.city.globe import Plane
+from nostalgin_core.city.plot import Border, Move, Plot, carried
+from nostalgin_core.city.tileset import Place
+from tests.core.city.plain_fit import plain_fit
 
 SIZES = (1000, 3000, 10_000)
 WIDE_M, DEEP_M = 250.0, 60.0
+HOUSE_M = 7.0  # an outline has a point a house
+RAGGED_M = 0.4
+TURNED = Move(0.5)
+NEW_YORK = Plane(Place(-73.98, 40.75))
 
 
 def town(count: int) -> list[Plot]:
@@ -51,6 +65,48 @@ def town(count: int) -> list[Plot]:
     return plots
 
 
+def outlined(plots: list[Plot]) -> dict[str, anchor.Anchor]:
+    """Draw the outline of each block where it goes, ragged as houses make it."""
+    rng, there = np.random.default_rng(0), city.places(plots)
+    anchors = {}
+    for one in plots:
+        ring = shapely.LinearRing(
+            carried(TURNED, carried(there[one.block], one.outlines_m[0]))
+        )
+        spots = ring.interpolate(np.arange(0.0, ring.length, HOUSE_M))
+        points = shapely.get_coordinates(spots)
+        points += rng.normal(0.0, RAGGED_M, points.shape)
+        degrees = NEW_YORK.degrees(points)
+        longitude, latitude = degrees.mean(axis=0)
+        anchors[one.block] = anchor.Anchor(
+            float(longitude), float(latitude), outline_deg=(degrees,)
+        )
+    return anchors
+
+
+def alone(one: Plot) -> Plot:
+    """Rename a block's streets, so that it shares none."""
+    borders = tuple(replace(b, street=f"{one.block} {b.street}") for b in one.borders)
+    return replace(one, borders=borders)
+
+
+def by_outlines(plots: list[Plot]) -> None:
+    """Print what a block costs that lies in its outline, both ways."""
+    anchors = outlined(plots)
+    print(f"{len(plots)} blocks in outlines   ms/block   slow oracle   ratio")
+    for words, blocks in (
+        ("streets in common", plots),
+        ("no street in common", [alone(one) for one in plots]),
+    ):
+        took = []
+        for fitted in (anchor.fit, plain_fit):
+            with patch.object(anchor, "fit", fitted):
+                began = time.process_time()
+                anchor.anchored(blocks, anchors)
+                took.append(1000 * (time.process_time() - began) / len(plots))
+        print(f"{words:23} {took[0]:10.2f} {took[1]:13.2f} {took[1] / took[0]:7.2f}")
+
+
 def main(sizes: list[int]) -> None:
     """Print a row a size."""
     before: tuple[int, float] | None = None
@@ -67,6 +123,7 @@ def main(sizes: list[int]) -> None:
         )
         print(f"{count:8d} {took:8.2f} {took / base:7.2f} {power:6.2f}", flush=True)
         before = (count, took)
+    by_outlines(town(sizes[0]))
 
 
 if __name__ == "__main__":

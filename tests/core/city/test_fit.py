@@ -4,9 +4,11 @@ import shapely
 
 from nostalgin_core.city.fit import fit, nearest, quarters
 from nostalgin_core.city.plot import Move, carried
+from tests.core.city.plain_fit import plain_fit
 
 # a block that Broadway cuts aslant, anticlockwise from the south west
 RING = np.array([[0.0, 0.0], [240.0, 0.0], [240.0, 61.0], [25.0, 61.0]])
+ADRIFT_M = 4.0  # a wrong turn that finds no hold ends wherever rounding drives it
 TURNED = [Move(0.5, 300.0, -120.0), Move(-2.9, -40.0, 77.0), Move(1.6, 0.0, 0.0)]
 
 
@@ -55,6 +57,24 @@ def test_two_rings_find_the_two_parts_that_a_street_leaves() -> None:
     outline = [carried(TURNED[2], ring) for ring in rings]
     best = fit(rings, outline, quarters(rings, outline))[0]
     assert off(best.move, TURNED[2]) < 0.01
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_all_turns_together_give_what_each_gives_alone(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    other = np.array([[-90.0, 0.0], [-30.0, 0.0], [-5.0, 61.0], [-90.0, 61.0]])
+    rings = [RING, other][: 1 + seed % 2]
+    true = Move(rng.uniform(-3, 3), *rng.uniform(-3000, 3000, 2))
+    outline = [carried(true, r + rng.normal(0, 1.5, r.shape)) for r in rings]
+    turns = quarters(rings, outline)
+    together, alone = fit(rings, outline, turns), plain_fit(rings, outline, turns)
+    assert off(together[0].move, alone[0].move) < 1e-4
+    costs = zip(together, alone, strict=True)
+    near = [one for one in costs if one[1].cost_m < ADRIFT_M]
+    assert near
+    for one, other in near:
+        assert one.cost_m == pytest.approx(other.cost_m, abs=1e-4)
+        assert one.misfit_m == pytest.approx(other.misfit_m, abs=1e-3)
 
 
 def test_the_nearest_turn_is_found_round_the_circle() -> None:
