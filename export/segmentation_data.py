@@ -9,6 +9,7 @@ rest on them.
 """
 
 import json
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -74,6 +75,17 @@ def read_folder(folder: Path, *, held_out: bool = False) -> list[Sample]:
         photo = next(p for stem, p in photos.items() if stem.endswith(path.stem))
         samples.append(read_sample(photo, path))
     return samples
+
+
+def some(samples: Sequence[Sample], share: float) -> list[Sample]:
+    """Keep a share of the photographs, by the hash of their names.
+
+    A smaller share is part of a larger one, so that a learning curve adds labels and
+    changes none. Raises ValueError unless 0 < share <= 1.
+    """
+    if not 0 < share <= 1:
+        raise ValueError(f"a share of the labels is above 0 and at most 1, not {share}")
+    return [s for s in samples if zlib.crc32(s.name.encode()) < share * 2**32]
 
 
 def read_sample(photo: Path, label: Path) -> Sample:

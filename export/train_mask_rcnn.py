@@ -25,7 +25,7 @@ from export.held_out import as_callable, figures, pixel_figures, pixels_alone
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.painted_segmentation_data import read_painted
 from export.pseudo_labels import read_pseudo
-from export.segmentation_data import Sample, read_folder
+from export.segmentation_data import Sample, read_folder, some
 from export.segmentation_samples import Schedule, Seen, drawn
 from export.semantic_branch import from_trial
 from export.weights import BRANCH, read_weights
@@ -155,7 +155,7 @@ def pooled(args: argparse.Namespace) -> tuple[list[list[Sample]], list[Sample]]:
     Each pool is drawn evenly: two tax photos and three of streets to one that is
     painted and two that nobody outlined.
     """
-    tax, streets = (read_folder(args.data / n) for n in SETS)
+    tax, streets = (some(read_folder(args.data / n), args.share) for n in SETS)
     painted = read_painted(args.painted) if args.painted else []
     pseudo = []
     if args.pseudo:
@@ -236,6 +236,7 @@ def _arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
         "--rare", type=float, default=usual.rare, help="share of photos"
     )
     parser.add_argument("--short-px", type=int, nargs=2, default=usual.short_px)
+    parser.add_argument("--share", type=float, default=1.0, help="of the labels")
     parser.add_argument("--into", type=Path, required=True, help="logs, checkpoints")
     parser.add_argument("--painted", type=Path, help="folder of painted photos")
     parser.add_argument("--pseudo", type=Path, help="folder of pseudo labels")

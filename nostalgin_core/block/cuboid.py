@@ -14,7 +14,7 @@ from nostalgin_core.block.chain import Footprint
 from nostalgin_core.block.heights import HIGHEST_M, LOWEST_M, Shown, Told
 from nostalgin_core.records import Building, Front, Height, Wall
 
-LEAST_CLEAR = 0.35  # of an elevation, or a plain wall is more honest
+LEAST_CLEAR = 0.5  # of an elevation, or it is mostly invented: a plain wall then
 ASSUMED_M = 14.0  # four storeys, where a whole block has no photograph
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from export.copy_paste import donors, paste
-from export.segmentation_data import UNSCORED, read_folder, truth, view
+from export.segmentation_data import UNSCORED, read_folder, some, truth, view
 from export.wear import wear
 from nostalgin_core.segment import CATEGORIES
 from tests.data import DATA, needs_data
@@ -87,3 +87,13 @@ def test_the_held_out_block_is_never_trained_on() -> None:
     assert not any(name.startswith("00993") for name in learnt)
     assert len(held) == 20
     assert len(learnt) + len(held) == 99
+
+
+@needs_data
+def test_a_smaller_share_of_the_labels_is_part_of_a_larger_one() -> None:
+    samples = read_folder(DATA / "taxphotos")
+    names = [{s.name for s in some(samples, share)} for share in (0.25, 0.5, 1.0)]
+    assert names[0] < names[1] < names[2] == {s.name for s in samples}
+    assert 0.35 < len(names[1]) / len(names[2]) < 0.65
+    with pytest.raises(ValueError, match="at most 1"):
+        some(samples, 1.5)
