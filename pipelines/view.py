@@ -178,8 +178,10 @@ def shown(address: str) -> bool:
         return False
 
 
-def view(city: Path, *, port: int = 0, browser: bool = True) -> None:
-    """Name a city's address, then serve it until it is interrupted.
+def view(
+    city: Path, *, port: int = 0, browser: bool = True, announced: bool = True
+) -> None:
+    """Name a city's address, if it is to be, and serve it until it is interrupted.
 
     Raises:
         NoSiteError: if the city has no site.
@@ -187,8 +189,9 @@ def view(city: Path, *, port: int = 0, browser: bool = True) -> None:
     """
     with server(site_of(city), port=port) as running:
         address = address_of(running)
-        with contextlib.suppress(OSError):  # whoever gave the port knows it
-            print(address, flush=True)  # noqa: T201
+        if announced:
+            with contextlib.suppress(OSError):  # whoever gave the port knows it
+                print(address, flush=True)  # noqa: T201
         if browser:  # one in a terminal ends only when its reader does
             threading.Thread(target=shown, args=(address,), daemon=True).start()
         with contextlib.suppress(KeyboardInterrupt):

@@ -8,10 +8,9 @@ from pipelines.cli.launch import (
     TOO_MANY_REJECTIONS,
     JsonLines,
     ModelsFolder,
-    Quiet,
     built,
 )
-from pipelines.console import Voice, errors
+from pipelines.console import Quiet, Voice, errors
 
 EXAMPLES: Final = """
 Examples:

@@ -5,8 +5,8 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, Quiet
-from pipelines.console import Voice, errors, fail
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
+from pipelines.console import Quiet, Voice, errors, fail
 
 MOST: Final = 10  # of a kind, to a reader
 EXAMPLES: Final = """

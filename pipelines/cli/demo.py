@@ -7,8 +7,8 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import JsonLines, Quiet, built, told
-from pipelines.console import Voice, errors, unwritable
+from pipelines.cli.launch import JsonLines, built, told
+from pipelines.console import Quiet, Voice, errors, unwritable
 
 MOST_WORKERS: Final = 4  # each holds both networks
 
@@ -69,4 +69,4 @@ def demo_command(
         "site", f"the site lies in {site}: nostalgin view {folder}", site=str(site)
     )
     if browser and sys.stdout.isatty():
-        view(folder)
+        view(folder, announced=not quiet)

@@ -8,7 +8,7 @@ import typer
 
 from pipelines import bounded
 from pipelines.cli.launch import ModelsFolder
-from pipelines.console import echo, fail, unwritable
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
 Examples:
@@ -34,6 +34,7 @@ def explain_command(
         ),
     ] = False,
     models: ModelsFolder = None,
+    quiet: Quiet = False,
 ) -> None:
     """Take one photo through every stage and show what each made of it.
 
@@ -60,21 +61,24 @@ def explain_command(
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(out, problem) from problem
+    voice = Voice(errors, quiet=quiet)
     targets = sum(one["target"] for one in report["facades"])
-    echo(
+    voice.echo(
         f"{len(report['facades'])} facades ({targets} target), "
         f"{len(report['occluders'])} occluders, {report['seconds']['total']:.1f} CPU s"
     )
     for one in report["rejections"]:
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
-        echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
-    echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
+        voice.echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
+    voice.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
 
 
 def explain_front_command(
     city: Annotated[Path, typer.Argument(help="A finished city.")],
     front: Annotated[str, typer.Argument(help="A front's id, as 996-33-0.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write to.")],
+    *,
+    quiet: Quiet = False,
 ) -> None:
     """Show all views of one front, laid over each other, and what came from where.
 
@@ -92,10 +96,11 @@ def explain_front_command(
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(out, problem) from problem
-    echo(
+    voice = Voice(errors, quiet=quiet)
+    voice.echo(
         f"{front}: {report['unseen']:.1%} hidden in {report['photo']}, "
         f"{report['left']:.1%} in all {1 + len(report['views'])}"
     )
     for one in report["views"]:
-        echo(f"{one['photo']}: {one['why'] or str(one['lent']) + ' texels'}")
-    echo(f"see {out / 'sheet.png'} and {out / 'front.json'}")
+        voice.echo(f"{one['photo']}: {one['why'] or str(one['lent']) + ' texels'}")
+    voice.echo(f"see {out / 'sheet.png'} and {out / 'front.json'}")

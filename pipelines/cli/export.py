@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import Voice, echo, errors, fail, unwritable
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
 Examples:
@@ -30,6 +30,7 @@ def export_command(
     base: Annotated[
         str, typer.Option(help="For iiif: the address where the site will lie.")
     ] = "",
+    quiet: Quiet = False,
 ) -> None:
     """Write the city that is shown in other formats, from its own models.
 
@@ -39,7 +40,7 @@ def export_command(
     from pipelines import formats
     from pipelines.site import Foreign
 
-    voice = Voice(errors, machine=False)
+    voice = Voice(errors, quiet=quiet)
 
     def tell(block: str, done: int) -> None:
         if done % 100 == 0:
@@ -55,4 +56,4 @@ def export_command(
         raise unwritable(target, problem) from problem
     for name, count in counts.items():
         files = "1 file" if count == 1 else f"{count} files"
-        echo(f"{target / name}: {files}")
+        voice.echo(f"{target / name}: {files}")

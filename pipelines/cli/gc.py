@@ -4,8 +4,8 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import City, JsonLines, Quiet
-from pipelines.console import Voice, errors, fail, unwritable
+from pipelines.cli.launch import City, JsonLines
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
 Examples:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from pipelines.cli.asking import Whose, asking
-from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, ModelsFolder, Quiet
-from pipelines.console import Voice, errors, fail, indexed, unwritable
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines, ModelsFolder
+from pipelines.console import Quiet, Voice, errors, fail, indexed, unwritable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,6 +37,13 @@ Examples:
 List = Annotated[
     str | None,
     typer.Option(help="A list with block, lot, street...: CSV, JSON or IIIF."),
+]
+Encoding = Annotated[
+    str,
+    typer.Option(
+        help="Of the list, as cp1252 or mac-roman; else UTF-8 and UTF-16 are known, "
+        "and cp1252 is guessed."
+    ),
 ]
 Blocks = Annotated[
     list[str] | None, typer.Option(help="Take this block alone; may be repeated.")
@@ -89,6 +96,7 @@ def index_command(
     city: Annotated[str, typer.Option("-o", "--out", help="City folder to write to.")],
     *,
     catalogue: List = None,
+    encoding: Encoding = "",
     block: Blocks = None,
     credit: Credit = "",
     title: Title = "",
@@ -117,6 +125,7 @@ def index_command(
     ask = asking(city, boards, voice, **shelf)
     told = {"outline_key": outline_key, "outline_crs": outline_crs, "place": place}
     told |= {"credit": credit, "title": title, "blocks": tuple(block or ())}
+    told |= {"encoding": encoding}
     files = {"catalogue": catalogue, "outlines": outlines, "places": places}
     files |= {"streets": streets, "profile": profile}
     wish = index.Wish.told(photos, boards=boards.value, **files, **told)

@@ -26,9 +26,6 @@ City = Annotated[str, typer.Argument(help="The city folder.")]
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
 ]
-Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Tell nothing but what went wrong.")
-]
 
 
 def told(

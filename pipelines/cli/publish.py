@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import fail, unwritable
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
 Examples:
@@ -17,6 +17,8 @@ Examples:
 def publish_command(
     city: Annotated[Path, typer.Argument(help="The city folder, or its site.")],
     folder: Annotated[Path, typer.Argument(help="A new folder, or one it made.")],
+    *,
+    quiet: Quiet = False,
 ) -> None:
     """Copy the city's site to a folder that any web host can serve.
 
@@ -32,6 +34,7 @@ def publish_command(
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(folder, problem) from problem
-    typer.echo(f"{done.files} files, {done.size:,} bytes, lie in {done.folder}")
-    typer.echo("copy them to any web host: they need no server program, and no build")
-    typer.echo(f"to try it: nostalgin view {done.folder}")
+    voice = Voice(errors, quiet=quiet)
+    voice.echo(f"{done.files} files, {done.size:,} bytes, lie in {done.folder}")
+    voice.echo("copy them to any web host: they need no server program, and no build")
+    voice.echo(f"to try it: nostalgin view {done.folder}")

@@ -8,7 +8,7 @@ from typing import Annotated, Final
 import typer
 
 from pipelines.cli.launch import JsonLines
-from pipelines.console import echo, fail, unwritable
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
 Examples:
@@ -33,6 +33,7 @@ def report_command(
         Path | None, typer.Option("-o", "--out", help="The page; else report.html.")
     ] = None,
     run: Annotated[str, typer.Option(help="A run; else the one that is shown.")] = "",
+    quiet: Quiet = False,
 ) -> None:
     """Write a page of what was built: rejections, time, evidence, heights, the worst.
 
@@ -54,13 +55,14 @@ def report_command(
         target.write_text(text, encoding="utf-8", errors="replace")
     except OSError as problem:
         raise unwritable(target, problem) from problem
-    echo(f"see {target}")
+    Voice(errors, quiet=quiet).echo(f"see {target}")
 
 
 def status_command(
     city: Annotated[Path, typer.Argument(help="The city folder.")],
     *,
     json_lines: JsonLines = False,
+    quiet: Quiet = False,
 ) -> None:
     """List a city's runs: when, how long, how many photos, and which one is shown."""
     from pipelines import report
@@ -71,17 +73,20 @@ def status_command(
         pasts, at_work = report.history(store), busy(store)
     except OSError as problem:
         raise fail(f"{city}: {problem.strerror}; name a city folder") from problem
+    voice = Voice(errors, quiet=quiet)
     if json_lines:
         for one in pasts:
-            echo(json.dumps(asdict(one) | {"state": one.state}))
+            voice.echo(json.dumps(asdict(one) | {"state": one.state}))
         return
     for one in pasts:
         took = "" if one.seconds is None else f"{one.seconds:.0f} s"
         shown = ""
         if one.photos is not None and one.shown_share is not None:
             shown = f"{one.photos} photos, {one.shown_share:.0%} of them shown"
-        echo(f"{one.run}  {one.began:20}  {took:>8}  {one.state:10}  {shown}".rstrip())
+        voice.echo(
+            f"{one.run}  {one.began:20}  {took:>8}  {one.state:10}  {shown}".rstrip()
+        )
     if not pasts:
-        echo(f"{city}: nothing was built there yet; run `nostalgin build`")
+        voice.echo(f"{city}: nothing was built there yet; run `nostalgin build`")
     if at_work:
-        echo(f"a run is at work there{at_work}")
+        voice.echo(f"a run is at work there{at_work}")

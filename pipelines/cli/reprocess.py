@@ -13,11 +13,10 @@ from pipelines.cli.launch import (
     City,
     JsonLines,
     ModelsFolder,
-    Quiet,
     failing,
     told,
 )
-from pipelines.console import Voice, Watch, echo, errors, fail, summed, unwritable
+from pipelines.console import Quiet, Voice, Watch, errors, fail, summed, unwritable
 
 if TYPE_CHECKING:
     from pipelines.reprocess import Plan, Reprocessed
@@ -65,15 +64,15 @@ def reprocess_command(
     it is indexed again first. Blocks that none of this touches stay as they are, and
     are not opened.
     """
+    voice = Voice(errors, machine=json_lines, quiet=quiet)
     if rollback:
         if dry_run or thorough or budget or context.args:
             raise typer.BadParameter("--rollback takes no other options of a run")
-        again(city, rollback, Voice(errors, machine=json_lines, quiet=quiet))
+        again(city, rollback, voice)
         return
     asked = {"budget": budget, "thorough": thorough, "index": index}
-    voice = Voice(errors, machine=json_lines, quiet=quiet)
     if dry_run:
-        tell(looked(city, voice, str(models or ""), **asked), machine=json_lines)
+        tell(looked(city, voice, str(models or ""), **asked), voice)
         return
     done = redone(city, voice, str(models or ""), context.args, **asked)
     if done.report is not None and done.report.held:
@@ -158,14 +157,14 @@ def looked(
         raise unwritable(city, problem) from problem
 
 
-def tell(plan: "Plan", *, machine: bool) -> None:
+def tell(plan: "Plan", voice: Voice) -> None:
     """Tell a plan on the standard output."""
     known = plan.told()
-    if machine:
-        echo(json.dumps(known))
+    if voice.machine:
+        voice.echo(json.dumps(known))
         return
     for line in lines(known):
-        echo(line)
+        voice.echo(line)
 
 
 def lines(known: dict[str, Any]) -> list[str]:

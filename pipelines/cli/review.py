@@ -5,8 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import Quiet
-from pipelines.console import Voice, errors, fail, unwritable
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
 Examples:

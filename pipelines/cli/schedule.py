@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from pipelines.cli.launch import City, JsonLines, ModelsFolder, Quiet
+from pipelines.cli.launch import City, JsonLines, ModelsFolder
 from pipelines.cli.reprocess import redone
-from pipelines.console import Voice, errors
+from pipelines.console import Quiet, Voice, errors
 
 if TYPE_CHECKING:
     from pipelines.schedule import Record

@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import fail
+from pipelines.console import Quiet, fail
 
 EXAMPLES: Final = """
 Examples:
@@ -24,6 +24,7 @@ def view_command(
         typer.Option(min=0, max=65535, help="Port on this machine; 0 takes any."),
     ] = 0,
     browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
+    quiet: Quiet = False,
 ) -> None:
     """Serve the city to this machine alone and open it in a browser."""
     from pipelines.view import NoSiteError, site_of, view
@@ -35,6 +36,6 @@ def view_command(
     except OSError as problem:
         raise fail(f"{city}: {problem.strerror}; name a city folder") from problem
     try:
-        view(site, port=port, browser=browser)
+        view(site, port=port, browser=browser, announced=not quiet)
     except OSError as problem:
         raise fail(f"port {port}: {problem.strerror}; take another") from problem

@@ -4,7 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import fail
+from pipelines.console import Quiet, fail
 
 EXAMPLES: Final = """
 Examples:
@@ -21,8 +21,11 @@ def workers_command(
     host: Annotated[
         str, typer.Option(help="Whoever reaches it can run programs here.")
     ] = "localhost",
+    *,
+    quiet: Quiet = False,
 ) -> None:
     """Start workers for Prism, Flink or another of Beam's runners, when it asks."""
+    del quiet  # they tell nothing else, ever
     from pipelines import build
 
     try:

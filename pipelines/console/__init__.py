@@ -12,10 +12,12 @@ from pipelines.console.failure import (
     unwritable,
 )
 from pipelines.console.hush import hushed
+from pipelines.console.options import Quiet
 from pipelines.console.progress import Watch
 from pipelines.console.voice import Voice, indexed, summed
 
 __all__ = [
+    "Quiet",
     "Voice",
     "Watch",
     "echo",

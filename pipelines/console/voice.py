@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
 
-from pipelines.console.failure import fail, harmless, unheard
+from pipelines.console.failure import echo, fail, harmless, unheard
 
 if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
     from pipelines.build import Report
@@ -50,6 +50,15 @@ class Voice:
             why = unheard(stream, problem)
             if self.machine:
                 fail(f"standard output: {why}; the work goes on, but untold")
+
+    def echo(self, text: str) -> None:
+        """Tell on standard output what came of a command that has done its work.
+
+        Raises:
+            Exit: if nobody can read it there.
+        """
+        if not self.quiet:
+            echo(text)
 
 
 def shortened(text: str) -> str:

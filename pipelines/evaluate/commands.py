@@ -4,15 +4,13 @@ Each subcommand prints one report, as tables for people or, with `--json`, as JS
 What is measured is told in the module of the same name beside this one.
 """
 
-import contextlib
-import json
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from pipelines.console import fail
+from pipelines.console import Quiet
+from pipelines.evaluate.asked import AsJson, ModelsFolder, measuring, network, tell
 
 app = typer.Typer(
     help="Measure a stage against labelled data.",
@@ -21,45 +19,12 @@ app = typer.Typer(
 )
 
 
-ModelsFolder = Annotated[
-    Path | None, typer.Option("--models", help="Folder with other networks.")
-]
 City = Annotated[Path, typer.Argument(help="A finished city of its photographs.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 @app.callback()
 def evaluate() -> None:
     """Measure a stage against labelled data."""
-
-
-@contextlib.contextmanager
-def measuring() -> Iterator[None]:
-    """Keep to one thread, so that CPU seconds compare; tell what can't be measured."""
-    from pipelines.models import Unlocked, one_thread
-
-    one_thread()
-    from pipelines.evaluate import Unmeasurable
-
-    try:
-        yield
-    except (Unmeasurable, Unlocked) as problem:
-        raise fail(str(problem)) from problem
-    except OSError as problem:
-        words = f"{problem.filename}: {problem.strerror}"
-        raise fail(f"{words}; name folders that are there and free") from problem
-
-
-def network(models: Path | None, name: str) -> Any:
-    """Load a network, from the package unless another folder is named."""
-    from pipelines import models as shelf
-
-    return shelf.Models(str(models or shelf.PACKAGED)).load(name)
-
-
-def tell(report: Any, text: str, *, as_json: bool) -> None:
-    """Print a report."""
-    typer.echo(json.dumps(report, indent=1) if as_json else text)
 
 
 @app.command("segmentation")
@@ -72,6 +37,7 @@ def segmentation_command(
     ] = None,
     models: ModelsFolder = None,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure how well fronts and what hides them are found: the paper's table 1."""
     with measuring():
@@ -83,7 +49,7 @@ def segmentation_command(
         report = segmentation.evaluate(
             labelled, network(models, "segment"), sheet=sheet
         )
-    tell(report, segmentation_table.text(report), as_json=as_json)
+    tell(report, segmentation_table.text(report), as_json=as_json, quiet=quiet)
 
 
 RECTIFICATION_EXAMPLES = """
@@ -123,6 +89,7 @@ def rectification_command(
         Path | None, typer.Option(help="Folder for pictures of all detectors' lines.")
     ] = None,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure how well fronts are straightened, and the paper's table 2."""
     with measuring():
@@ -138,7 +105,7 @@ def rectification_command(
             sheets=sheet,
             drawn=pictures,
         )
-    tell(report, rectification_table.text(report), as_json=as_json)
+    tell(report, rectification_table.text(report), as_json=as_json, quiet=quiet)
 
 
 INPAINTING_EXAMPLES = """
@@ -170,6 +137,7 @@ def inpainting_command(
     ] = None,
     models: ModelsFolder = None,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure how well holes are filled: the paper's table 3."""
     with measuring():
@@ -182,7 +150,7 @@ def inpainting_command(
             holes=None if holes is None else (holes,),
             most=most,
         )
-    tell(report, inpainting.text(report), as_json=as_json)
+    tell(report, inpainting.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("slips")
@@ -191,6 +159,7 @@ def slips_command(
     *,
     blocks: Annotated[str, typer.Option(help="Some of its blocks, by commas.")] = "",
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure how far one slip of a list reaches: every kind, in every row."""
     with measuring():
@@ -198,7 +167,7 @@ def slips_command(
 
         wanted = [name.strip() for name in blocks.split(",") if name.strip()]
         report = slips.evaluate(listed, blocks=wanted)
-    tell(report, slips.text(report), as_json=as_json)
+    tell(report, slips.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("heights")
@@ -207,13 +176,14 @@ def heights_command(
     city: City,
     *,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure heights against storeys counted by eye; wrong ones by name."""
     with measuring():
         from pipelines.evaluate import heights
 
         report = heights.evaluate(data, city)
-    tell(report, heights.text(report), as_json=as_json)
+    tell(report, heights.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("city")
@@ -224,13 +194,14 @@ def city_command(
     city: City,
     *,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure a city lot by lot: street, side, order, width, height; wrong ones."""
     with measuring():
         from pipelines.evaluate import layout
 
         report = layout.evaluate(data, city)
-    tell(report, layout.text(report), as_json=as_json)
+    tell(report, layout.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("views")
@@ -239,13 +210,14 @@ def views_command(
     *,
     block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure whether two photographs' views of one front are told to be one."""
     with measuring():
         from pipelines.evaluate import views
 
         report = views.evaluate(folder, block=block)
-    tell(report, views.text(report), as_json=as_json)
+    tell(report, views.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("fronts")
@@ -255,13 +227,14 @@ def fronts_command(
     *,
     block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure whether facades are told to be the right fronts; wrong ones by name."""
     with measuring():
         from pipelines.evaluate import fronts
 
         report = fronts.evaluate(data, city, block=block)
-    tell(report, fronts.text(report), as_json=as_json)
+    tell(report, fronts.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("borrowed")
@@ -269,13 +242,14 @@ def borrowed_command(
     city: Annotated[Path, typer.Argument(help="A finished city.")],
     *,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Sum up what neighbours' photographs lent to each block's fronts."""
     with measuring():
         from pipelines.evaluate import borrowed
 
         report = borrowed.evaluate(city)
-    tell(report, borrowed.text(report), as_json=as_json)
+    tell(report, borrowed.text(report), as_json=as_json, quiet=quiet)
 
 
 @app.command("placards")
@@ -286,6 +260,7 @@ def placards_command(
     block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
     models: ModelsFolder = None,
     as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure whether boards alone lead to the right lots, among ten times as many."""
     with measuring():
@@ -293,4 +268,4 @@ def placards_command(
 
         told = str(models or "")
         report = placards.evaluate(folder, city, models=told, block=block)
-    tell(report, placards.text(report), as_json=as_json)
+    tell(report, placards.text(report), as_json=as_json, quiet=quiet)

@@ -38,6 +38,7 @@ class Wish:
 
     photos: str
     catalogue: str = ""
+    encoding: str = ""
     blocks: tuple[str, ...] = ()
     credit: str = ""
     title: str = ""
@@ -76,6 +77,7 @@ class Wish:
         }
         words = {n: getattr(self, n) for n in ("outline_key", "outline_crs", "place")}
         told = {"credit": self.credit, "title": self.title, "blocks": self.blocks}
+        told |= {"encoding": self.encoding}
         archive = profile(self.profile)
         return {**told, "places": Asked(**paths, **words), "archive": archive}
 

@@ -74,6 +74,7 @@ def index(
     places: Asked | None = None,
     ask: Ask | None = None,
     archive: Profile | None = None,
+    encoding: str = "",
     tell: lists.Tell = lists.silent,
 ) -> Indexed:
     """Write a city folder's manifest; without a `title` its folder's name is shown.
@@ -91,7 +92,7 @@ def index(
     """
     store = Store(city)
     mended = replaceable(store, credit, force=force)
-    named = {"credit": credit, "title": title, "places": places}
+    named = {"credit": credit, "title": title, "places": places, "encoding": encoding}
     asked = {"blocks": blocks, "ask": ask, "archive": archive, "tell": tell}
     return put(store, draft(photos, listed, city, **named, **asked), mended)
 
@@ -107,6 +108,7 @@ def draft(
     places: Asked | None = None,
     ask: Ask | None = None,
     archive: Profile | None = None,
+    encoding: str = "",
     tell: lists.Tell = lists.silent,
 ) -> Draft:
     """Make a manifest as `index` does, and write none of it.
@@ -116,7 +118,8 @@ def draft(
     """
     own = archive or profile(USUAL)
     ask = with_boards(ask, own)
-    folder, given = lists.opened(photos, listed, city, naming=own.naming, tell=tell)
+    read_as = {"naming": own.naming, "encoding": encoding}
+    folder, given = lists.opened(photos, listed, city, **read_as, tell=tell)
     names, unnamed = images(folder, city)
     root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
     heard, read = first_heard(given, names, Path(root), ask, own)

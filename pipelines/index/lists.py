@@ -16,7 +16,7 @@ from nostalgin_core import catalogue
 from nostalgin_core.catalogue import NAMELESS, Catalogue, Naming
 from nostalgin_core.records import Rejection
 from pipelines import bounded
-from pipelines.index import comma, names
+from pipelines.index import comma, letters, names
 from pipelines.index.images import Nothing
 from pipelines.index.web import is_web
 from pipelines.store import textual
@@ -64,6 +64,7 @@ def opened(
     city: str,
     *,
     naming: Naming = NAMELESS,
+    encoding: str = "",
     tell: Tell = silent,
 ) -> tuple[Path, Listing | None]:
     """Find the folder that holds the photographs, and the list that tells of them.
@@ -74,7 +75,7 @@ def opened(
     Raises:
         Nothing: if either can't be read.
     """
-    given = None if listed is None else listing(listed, city)
+    given = None if listed is None else listing(listed, city, encoding)
     name = str(source)
     if not is_web(name) and not presents(Path(source)):
         return Path(source), given
@@ -96,8 +97,8 @@ def presents(path: Path) -> bool:
         return False
 
 
-def listing(listed: str | Path, city: str) -> Listing:
-    """Read a list of whatever kind.
+def listing(listed: str | Path, city: str, encoding: str = "") -> Listing:
+    """Read a list of whatever kind, and in whatever `encoding`, if that is told.
 
     Raises:
         Nothing: if it can't be read.
@@ -111,13 +112,19 @@ def listing(listed: str | Path, city: str) -> Listing:
         data = bounded.read(path, bounded.TABLE_BYTES)
     except OSError as problem:
         raise Nothing(f"{path}: {problem.strerror}; name a CSV file") from problem
+    try:
+        data, guessed = letters.utf8(data, encoding)
+    except letters.Garbled as problem:
+        raise Nothing(f"{path} {problem}") from problem
+    doubts = (f"{path.name}: {guessed}",) if guessed else ()
     if path.suffix.casefold() in JSON:
-        return of_json(data, path, city)
+        made = of_json(data, path, city)
+        return replace(made, warnings=(*doubts, *made.warnings))
     try:
         _, rows = comma.parsed(data)
     except comma.NoTable as problem:
         raise Nothing(f"{path} {problem}") from problem
-    return Listing(path.name, rows)
+    return Listing(path.name, rows, warnings=doubts)
 
 
 def of_json(data: bytes, path: Path, city: str) -> Listing:

@@ -22,7 +22,7 @@ from playwright.sync_api import sync_playwright
 from pipelines import view
 from pipelines.site import site
 from tests.bench.bench_tileset import painted_city
-from tests.viewer.conftest import CHROMIUM, SOFTWARE_GL
+from tests.chromium import CHROMIUM, SOFTWARE_GL
 
 BASELINE = 42  # buildings: three blocks
 ROUNDS = 3

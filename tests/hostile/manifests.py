@@ -123,9 +123,10 @@ def cases() -> list[Case]:
 
 def read_as_csv() -> list[Case]:
     """Take the broken lists of `catalogues`: none names a front."""
+    unread = {name: data for name, (data, _) in catalogues.broken().items()}
     return [
         Case(f"CSV: {name}", csv(data), 1, ("manifest.csv",))
-        for name, (data, _) in catalogues.broken().items()
+        for name, data in (catalogues.foreign() | unread).items()
     ]
 
 

@@ -2,15 +2,20 @@
 
 import io
 import json
+from collections.abc import Iterator
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
+import pytest
+import typer
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from pipelines.cli import app
 from pipelines.console import Voice, indexed
-from pipelines.index.index import index
+from pipelines.index.index import Indexed, index
 from tests.pipelines import painted
 
 
@@ -80,3 +85,85 @@ def test_a_summary_says_how_many_widths_are_assumed(tmp_path: Path) -> None:
     (tmp_path / "list.csv").write_text("block,lot,width_m\n5,1,6\n5,2,\n")
     words = ("index", folder, "--catalogue", tmp_path / "list.csv")
     assert "1 widths assumed" in nostalgin(*words, "-o", tmp_path / "city").output
+
+
+def commands(group: Any, *path: str) -> Iterator[tuple[str, Any]]:
+    """Walk through all commands that the program has, evaluate's tables too."""
+    for name, one in group.commands.items():
+        if hasattr(one, "commands"):
+            yield from commands(one, *path, name)
+        else:
+            yield " ".join((*path, name)), one
+
+
+EVERY = dict(commands(typer.main.get_command(app)))
+PHOTO, MODELS = "{city}/../photos/5_1.png", "--models {city}/../models"
+MEASURED = {  # which module's report, and which one's words
+    "segmentation": ("segmentation", "segmentation_table"),
+    "rectification": ("rectification", "rectification_table"),
+    **{one: (one, one) for one in ("inpainting", "slips", "heights", "views")},
+    **{one: (one, one) for one in ("fronts", "borrowed", "placards")},
+    "city": ("layout", "layout"),
+}
+TWO = ("heights", "city", "fronts", "placards")  # of which two folders are asked
+WORDS = {
+    "explain": f"explain {PHOTO} -o {{city}}/out --no-placard {MODELS}",
+    "explain-front": "explain-front {city} 5-1-0 -o {city}/out",
+    "index": "index {city}/../photos -o {city}/new",
+    "build": f"build {{city}} {MODELS}",
+    "publish": "publish {city} {city}/public",
+    "demo": "demo -o {city}/demo",
+    "reprocess": f"reprocess {{city}} {MODELS}",
+    "schedule": f"schedule {{city}} --once --cron * {MODELS}",
+    "status": "status {city}",
+    "workers": "workers",
+    **{
+        one: f"{one} {{city}}"
+        for one in ("check", "corrections", "review", "view", "export", "report", "gc")
+    },
+    **{
+        f"evaluate {one}": f"evaluate {one} {{city}}" + " {city}/out" * (one in TWO)
+        for one in MEASURED
+    },
+}
+
+
+@pytest.fixture
+def stubbed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Take away what takes long, and what goes on until it is interrupted."""
+    for report, words in MEASURED.values():
+        measured = import_module(f"pipelines.evaluate.{report}")
+        monkeypatch.setattr(measured, "evaluate", lambda *_, **__: {})
+        table = import_module(f"pipelines.evaluate.{words}")
+        monkeypatch.setattr(table, "text", lambda _: "a table\nof two lines")
+    monkeypatch.setattr("pipelines.evaluate.labels.pairs", lambda *_, **__: [])
+    monkeypatch.setattr("pipelines.build.serve", lambda *_: None)
+    monkeypatch.setattr("pipelines.view.Server.serve_forever", lambda _: None)
+    front = {"unseen": 0.1, "left": 0.0, "photo": "5_1.png", "views": ()}
+    monkeypatch.setattr("pipelines.explain.explain_front", lambda *_: front)
+    none = Indexed(0, 0, 0, (), 0, (), ("a warning",))
+    monkeypatch.setattr("pipelines.demo.painted", lambda *_, **__: ("", ""))
+    monkeypatch.setattr("pipelines.index.index", lambda *_, **__: none)
+    monkeypatch.setattr("pipelines.cli.demo.built", lambda *_, **__: None)
+
+
+@pytest.mark.usefixtures("stubbed")
+@pytest.mark.parametrize("name", EVERY)
+def test_every_command_is_quiet_if_it_is_told_to(name: str, other: Path) -> None:
+    assert name in WORDS, f"say by which words {name} is to be tried"
+    words = [word.format(city=other) for word in WORDS[name].split()]
+    (other.parent / "photos").mkdir()
+    (other.parent / "photos" / "5_1.png").write_bytes(painted.photo())
+    if name == "schedule":
+        words[words.index("*")] = "* * * * *"
+    loud = nostalgin(*words)
+    assert bool(loud.output) is (name != "workers"), loud.output
+    quiet = nostalgin(*words, "--quiet")
+    assert (loud.exit_code, quiet.exit_code, quiet.output) == (0, 0, "")
+    assert nostalgin(*words, "-q").output == ""
+
+
+def test_a_plan_is_told_to_those_who_are_not_quiet_alone(other: Path) -> None:
+    words = ("reprocess", other, "--dry-run", "--models", other.parent / "models")
+    assert "nothing is stale" in nostalgin(*words).output
+    assert nostalgin(*words, "--quiet").output == ""

@@ -1,7 +1,6 @@
 """A painted site, a server for it, and a real browser that walks in it."""
 
 import json
-import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,8 +15,6 @@ from pipelines import view
 from pipelines.site.record import record
 from tests.core import sample_block
 
-CHROMIUM = Path(os.environ.get("NOSTALGIN_CHROMIUM", "/usr/bin/chromium"))
-SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 HOSTILE = '<img src=x onerror="window.hacked=1"> & <b>Archive</b>'
 WITHOUT_PICTURE = "photo-1-7"
 RECORD = "https://archive.example/plate"
@@ -105,20 +102,6 @@ def address(folder: Path) -> Iterator[str]:
         threading.Thread(target=running.serve_forever, daemon=True).start()
         yield view.address_of(running)
         running.shutdown()
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    playwright = pytest.importorskip("playwright.sync_api", reason="no Playwright")
-    with playwright.sync_playwright() as driver:
-        known = (
-            CHROMIUM if CHROMIUM.is_file() else Path(driver.chromium.executable_path)
-        )
-        if not known.is_file():
-            pytest.skip(f"no Chromium at {known}; set NOSTALGIN_CHROMIUM to one")
-        running = driver.chromium.launch(executable_path=str(known), args=SOFTWARE_GL)
-        yield running
-        running.close()
 
 
 class Visit:

@@ -23,14 +23,6 @@ from tests.pipelines.cities import artifacts, built, copied, tree
 TWO_PROCESSES = ("--direct_num_workers=2",)
 
 
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A painted city that was built once, in this process."""
-    city = painted.write_city(tmp_path_factory.mktemp("painted"))
-    built(city)
-    return city
-
-
 def test_every_photo_gives_facades_and_every_lot_a_building(city: Path) -> None:
     report = built(city)
     assert (report.photos, report.rejected_photos) == (4, 0)

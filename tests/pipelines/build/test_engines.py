@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.pipelines import painted
 from tests.pipelines.cities import built, copied, tree
 
 BESIDE = Path(sys.executable).with_name("prism")
@@ -21,14 +20,6 @@ PRISM = PRISM or (str(BESIDE) if BESIDE.is_file() else None)
 FLINK_JAR = os.environ.get("NOSTALGIN_FLINK_JOB_SERVER_JAR")
 FLINK_MASTER = os.environ.get("NOSTALGIN_FLINK_MASTER", "[local]")
 WAIT_S = 90.0
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A painted city that was built once, in this process."""
-    city = painted.write_city(tmp_path_factory.mktemp("painted"))
-    built(city)
-    return city
 
 
 def free_port() -> int:

@@ -10,7 +10,6 @@ import pytest
 from prometheus_client.openmetrics.parser import text_string_to_metric_families
 
 from pipelines.build import prometheus
-from tests.pipelines import painted
 from tests.pipelines.cities import built, copied
 
 Samples = dict[tuple[str, str, str], float]  # name, stage or process, bound
@@ -32,14 +31,6 @@ def samples(text: str) -> Samples:
 def record(city: Path) -> dict[str, Any]:
     run = (city / "CURRENT").read_text().strip()
     return json.loads((city / "runs" / run / "run.json").read_text())
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A painted city, built once."""
-    city = painted.write_city(tmp_path_factory.mktemp("metered"))
-    built(city)
-    return city
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pytest
 
 from pipelines.index import manifest
 from pipelines.store import Store
-from tests.pipelines import painted, s3
-from tests.pipelines.cities import artifacts, built, copied, tree
+from tests.pipelines import s3
+from tests.pipelines.cities import artifacts, copied, tree
 from tests.pipelines.s3 import bucket
 
 __all__ = ["bucket"]
@@ -21,14 +21,6 @@ SHARDS = (3, 1, 2)
 WAIT_S = 300.0
 
 pytestmark = pytest.mark.timeout(900)  # five processes start, two at a time
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A painted city that was built once, in this process."""
-    city = painted.write_city(tmp_path_factory.mktemp("painted"))
-    built(city)
-    return city
 
 
 def started(city: str, models: Path, shard: int) -> subprocess.Popen[str]:

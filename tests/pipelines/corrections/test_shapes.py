@@ -19,7 +19,7 @@ from pipelines.models import Models
 from pipelines.store import Store, tables
 from pipelines.store.refuse import drop_unkept
 from tests.pipelines import painted
-from tests.pipelines.cities import artifacts, built, copied, tree
+from tests.pipelines.cities import artifacts, built, tree
 
 HEAD = "photo,front_id,building_id,what,value,note\n"
 MASK = "45,90 265,145 268,555 44,590"
@@ -36,20 +36,6 @@ def refusals(city: Path, *lines: str) -> list[tuple[str, str, str]]:
     assert not made.outlines
     assert not made.quads
     return [(one.key, one.reason, one.detail) for one in made.rejections]
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    city = painted.write_city(tmp_path_factory.mktemp("painted"))
-    built(city)
-    return city
-
-
-@pytest.fixture
-def other(city: Path, tmp_path: Path) -> Path:
-    fresh = copied(city, tmp_path)
-    shutil.copytree(city, fresh, dirs_exist_ok=True)
-    return fresh
 
 
 @pytest.mark.parametrize(

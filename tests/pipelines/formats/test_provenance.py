@@ -10,8 +10,6 @@ from typer.testing import CliRunner
 
 from pipelines.cli import app
 from pipelines.formats import Unexportable, export
-from tests.pipelines import painted
-from tests.pipelines.cities import built
 from tests.pipelines.formats.readers import told
 
 PROV = """
@@ -25,13 +23,6 @@ print(json.dumps({"entities": count(prov.model.ProvEntity),
     "activities": sorted(str(one.identifier) for one in records
         if isinstance(one, prov.model.ProvActivity))}))
 """
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    city = painted.write_city(tmp_path_factory.mktemp("painted"))
-    built(city)
-    return city
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,6 @@
 """The page of a city: what it shows, what it hides from harm, and what it saves."""
 
 import json
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +11,7 @@ from typer.testing import CliRunner, Result
 
 from pipelines.cli import app
 from pipelines.corrections import shapes
-from tests.pipelines import painted
-from tests.pipelines.cities import built, copied
-from tests.viewer.conftest import CHROMIUM, SOFTWARE_GL
+from tests.pipelines.cities import copied
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'</script><script>alert(2)</script>"
 PNG = bytes.fromhex(
@@ -32,19 +28,6 @@ def read(city: Path, **cells: Any) -> None:
     row = {"photo": "5_1.png", "verdict": "contradicted", "board_says": "5 - 2 M"}
     row |= {"read_block": "5", "read_lot": "2", "name_says": "5-1", "score": 0.93}
     pq.write_table(pa.Table.from_pylist([row | cells]), city / "readings.parquet")
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    city = painted.write_city(tmp_path_factory.mktemp("painted"))
-    built(city)
-    return city
-
-
-@pytest.fixture
-def other(city: Path, tmp_path: Path) -> Path:
-    fresh = copied(city, tmp_path)
-    return Path(shutil.copytree(city, fresh, dirs_exist_ok=True))
 
 
 def page(city: Path, *words: object) -> str:
@@ -114,20 +97,6 @@ def test_a_folder_without_a_manifest_is_told(tmp_path: Path) -> None:
     result = nostalgin("review", tmp_path)
     assert result.exit_code == 1
     assert "nostalgin index" in " ".join(result.output.split())
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    playwright = pytest.importorskip("playwright.sync_api", reason="no Playwright")
-    with playwright.sync_playwright() as driver:
-        known = (
-            CHROMIUM if CHROMIUM.is_file() else Path(driver.chromium.executable_path)
-        )
-        if not known.is_file():
-            pytest.skip(f"no Chromium at {known}; set NOSTALGIN_CHROMIUM to one")
-        running = driver.chromium.launch(executable_path=str(known), args=SOFTWARE_GL)
-        yield running
-        running.close()
 
 
 def opened(browser: Any, city: Path) -> tuple[Any, list[str]]:
