@@ -13,17 +13,15 @@ from pipelines.index.again import (
     outdated,
     renewed,
 )
-from pipelines.index.anchors import Anchors, Asked, keep, load, told_of_places
+from pipelines.index.anchors import Anchors, keep, load, told_of_places
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
-from pipelines.index.profiles import profile
 from pipelines.index.title import cleaned, of_folder
 from pipelines.index.witnesses import Ask, Heard
 
 __all__ = [
     "Anchors",
     "Ask",
-    "Asked",
     "Heard",
     "Indexed",
     "Kept",
@@ -38,7 +36,6 @@ __all__ = [
     "load",
     "of_folder",
     "outdated",
-    "profile",
     "renewed",
     "told_of_places",
 ]
