@@ -4,11 +4,12 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from nostalgin_core.catalogue import NAMELESS
 from nostalgin_core.records import Rejection
 from pipelines import corrections
 from pipelines.check import copies, rows
 from pipelines.check.finding import Finding
-from pipelines.index import manifest
+from pipelines.index import PROFILE, Nothing, manifest, of_city
 from pipelines.index.roots import located, rooted
 from pipelines.index.row import Row
 from pipelines.store import Store
@@ -25,10 +26,21 @@ def check(store: Store, *, pictures: bool = True) -> tuple[Finding, ...]:
     made = corrections.fitting(corrections.applied(found.rows, given), store)
     told = [rejected(one) for one in (*found.rejections, *made.rejections)]
     told += rows.schema(found.warnings)
-    for look in (rows.keys, rows.rights, rows.streets, rows.widths):
+    told += of_names(store, made.rows)
+    for look in (rows.rights, rows.streets, rows.widths):
         told += look(made.rows)
     told += of_files(store, made.rows, pictures=pictures)
     return tuple(sorted(told, key=lambda one: (not one.grave, one.kind)))
+
+
+def of_names(store: Store, every: Sequence[Row]) -> Iterator[Finding]:
+    """Look at keys, by the profile that the city was indexed with."""
+    try:
+        naming = of_city(store).naming
+    except (Nothing, OSError) as problem:
+        naming, remedy = NAMELESS, "index again, with --profile"
+        yield Finding("profile", PROFILE, str(problem), remedy, grave=True)
+    yield from rows.keys(every, naming)
 
 
 def of_files(

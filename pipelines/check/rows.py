@@ -7,7 +7,7 @@ from statistics import median
 from typing import Final
 
 from nostalgin_core.address import house_numbers
-from nostalgin_core.catalogue import from_file_name
+from nostalgin_core.catalogue import Naming
 from pipelines.check.finding import Finding
 from pipelines.index.row import CSV, Row
 
@@ -17,7 +17,7 @@ LEAST_SD: Final = 0.15  # of the logarithm of a block's widths: lots are much al
 TO_SD: Final = 1.4826  # from the median absolute deviation of a normal distribution
 
 
-def keys(rows: Sequence[Row]) -> Iterator[Finding]:
+def keys(rows: Sequence[Row], naming: Naming) -> Iterator[Finding]:
     """Find photographs without a place, or with another than their names tell."""
     places: dict[tuple[str, str, str], Row] = {}
     for row in rows:
@@ -26,7 +26,7 @@ def keys(rows: Sequence[Row]) -> Iterator[Finding]:
             remedy = f"fill in front_id, block and lot of {row.photo}"
             yield Finding("no front", row.key, row.photo, remedy, grave=True)
             continue
-        told = from_file_name(row.photo) if row.photo else None
+        told = naming.told(row.photo) if row.photo else None
         if told is not None and told != (front.block, front.lot):
             words = f"{row.photo} by its name is of {told[0]}-{told[1]}"
             remedy = f"mend the lot ({front.block}-{front.lot}) or the photo"

@@ -16,10 +16,12 @@ from pipelines.index.again import (
 from pipelines.index.anchors import Anchors, keep, load, told_of_places
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
+from pipelines.index.profiles import PROFILE, of_city
 from pipelines.index.title import cleaned, of_folder
 from pipelines.index.witnesses import Ask, Heard
 
 __all__ = [
+    "PROFILE",
     "Anchors",
     "Ask",
     "Heard",
@@ -34,6 +36,7 @@ __all__ = [
     "keep",
     "known",
     "load",
+    "of_city",
     "of_folder",
     "outdated",
     "renewed",

@@ -15,7 +15,7 @@ from pipelines.index.anchors import Asked, taken
 from pipelines.index.columns import cells_of
 from pipelines.index.images import Nothing, images, spelt_out
 from pipelines.index.lots import Lots, from_list, from_names, lots_of
-from pipelines.index.profiles import USUAL, Profile, profile
+from pipelines.index.profiles import PROFILE, USUAL, Profile, profile
 from pipelines.index.title import cleaned
 from pipelines.index.told import Told, told
 from pipelines.index.witnesses import (
@@ -57,7 +57,7 @@ class Draft:
     """A manifest that is yet to be written, and what is written beside it."""
 
     encoded: tuple[bytes, bytes]  # CSV, Parquet
-    files: Mapping[str, bytes]  # what was told of places, by name in the city folder
+    files: Mapping[str, bytes]  # what was told beside, by name in the city folder
     heard: Hearing
     indexed: Indexed
 
@@ -138,6 +138,7 @@ def draft(
     wrong = (*unnamed, *read.rejections, *lots.crowded, *unlisted)
     doubts = (*lots.said, *beside.warnings, *lots.doubts, *placeless, *heard.doubts())
     told = {"rejections": wrong, "warnings": doubts}
+    files[PROFILE] = own.toml
     return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **told))
 
 

@@ -5,7 +5,7 @@ lie in `archives/`.
 """
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -13,9 +13,11 @@ from typing import Final
 from nostalgin_core.catalogue import Naming
 from pipelines import bounded
 from pipelines.index.images import Nothing
+from pipelines.store import Store
 
 ARCHIVES: Final = Path(__file__).with_name("archives")
 USUAL: Final = "nyc-1940"
+PROFILE: Final = "profile.toml"  # in a city folder: the one that it was indexed with
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,7 @@ class Profile:
     naming: Naming
     boarded: bool  # its photographs show boards
     board: str = ""  # a pattern of theirs; empty: of New York's
+    toml: bytes = b""  # as it was read
 
 
 def profile(asked: str) -> Profile:
@@ -64,6 +67,27 @@ def read(path: Path) -> Profile:
         raise Nothing(
             f"{path}: {why}; name a TOML file, or one of {known}"
         ) from problem
+    return parsed(data, path)
+
+
+def of_city(store: Store) -> Profile:
+    """Load what a city was indexed with; New York's where nothing tells it.
+
+    Raises:
+        Nothing: if what is kept makes no sense.
+        OSError: if it can't be read.
+    """
+    if not store.exists(PROFILE):
+        return shipped(USUAL)
+    return parsed(store.read_bytes(PROFILE, bounded.PROFILE_BYTES), Path(PROFILE))
+
+
+def parsed(data: bytes, path: Path) -> Profile:
+    """Read a profile's bytes.
+
+    Raises:
+        Nothing: if they make no sense; the path is named.
+    """
     try:
         cells = tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as problem:
@@ -75,4 +99,4 @@ def read(path: Path) -> Profile:
         of_cells,
     )  # slow to load, and a worker needs none
 
-    return of_cells(cells, path)
+    return replace(of_cells(cells, path), toml=data)

@@ -160,3 +160,45 @@ def test_pairs_of_hashes_agree_with_all_comparisons(seed: int) -> None:
 
 def test_of_no_hashes_there_are_no_pairs() -> None:
     assert pairs(np.zeros(0, np.uint64)) == []
+
+
+LOTS = """
+[names]
+patterns = ['^L(?P<lot>[0-9]+)_B(?P<block>[0-9]+)$']
+"""
+
+
+@pytest.mark.parametrize(
+    ("own", "name", "told"),
+    [
+        (LOTS, "L0002_B00005.png", True),
+        (LOTS, "L0001_B00005.png", False),
+        (LOTS, "x_00005_0002.png", False),  # as New York names them
+        ("", "x_00005_0002.png", False),
+        (None, "x_00005_0002.png", True),
+    ],
+)
+def test_names_are_read_as_the_city_was_indexed(
+    own: str | None, name: str, *, told: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / name).write_bytes(b"x")
+    listed = tmp_path / "list.csv"
+    listed.write_text(f"{HEAD}{name},5,1,Elm Street,3,6,An Archive\n")
+    words: list[object] = ["index", tmp_path / "photos", "--catalogue", listed]
+    words += ["-o", tmp_path / "city", "--boards", "none"]
+    if own is not None:
+        (tmp_path / "own.toml").write_text(own)
+        words += ["--profile", tmp_path / "own.toml"]
+    assert nostalgin(*words).exit_code == 0
+    (tmp_path / "own.toml").unlink(missing_ok=True)  # the city keeps its own
+    found = kinds(tmp_path / "city", pictures=False)
+    assert (("other lot by its name", False) in found) is told
+
+
+def test_a_profile_that_was_spoilt_is_grave(tmp_path: Path) -> None:
+    sound = city(tmp_path, SOUND, pictures())
+    (sound / "profile.toml").write_text("[names]\npatterns = ['(']\n")
+    assert kinds(sound) == [("profile", True)]
+    (sound / "profile.toml").unlink()  # of a city that was indexed before
+    assert kinds(sound) == []
