@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core.arrays import Corners, Mask, Matrix3, Points
+from nostalgin_core.arrays import Alpha, Corners, Mask, Matrix3, Points
 
 SPECK_SHARE = 0.02  # parts smaller than this share of the largest don't count
 LEAST_SHARE = 0.25  # of the fullest row: emptier ones at a side are its raggedness
@@ -84,20 +84,7 @@ def trimmed(
     """
     x0, y0, x1, y1 = bounds
     step = np.array([(x1 - x0) / cells, (y1 - y0) / cells])
-    plane_from_cell = np.array(
-        [
-            [step[0], 0.0, x0 + step[0] / 2],
-            [0.0, step[1], y0 + step[1] / 2],
-            [0.0, 0.0, 1.0],
-        ]
-    )
-    grid = cv2.warpPerspective(
-        mask.astype(np.float32),
-        photo_from_plane @ plane_from_cell,
-        (cells, cells),
-        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-        borderMode=cv2.BORDER_REPLICATE,
-    )
+    grid = resampled(mask, photo_from_plane, bounds, cells)
     x_from, x_to = _filled(grid.sum(axis=0), least_share)
     y_from, y_to = _filled(grid.sum(axis=1), least_share)
     return np.array(
@@ -107,6 +94,31 @@ def trimmed(
             x0 + x_to * step[0],
             y0 + y_to * step[1],
         ]
+    )
+
+
+def resampled(
+    mask: Mask | Alpha,
+    photo_from_plane: Matrix3,
+    bounds: Float[np.ndarray, "4"],
+    cells: int,
+) -> Float[np.ndarray, "c c"]:
+    """Resample a mask inside bounds of a front's plane, in so many rows and columns."""
+    x0, y0, x1, y1 = bounds
+    step = np.array([(x1 - x0) / cells, (y1 - y0) / cells])
+    plane_from_cell = np.array(
+        [
+            [step[0], 0.0, x0 + step[0] / 2],
+            [0.0, step[1], y0 + step[1] / 2],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+    return cv2.warpPerspective(
+        mask.astype(np.float32),
+        photo_from_plane @ plane_from_cell,
+        (cells, cells),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_REPLICATE,
     )
 
 

@@ -12,7 +12,7 @@ from jaxtyping import Float
 from nostalgin_core import evidence, homography
 from nostalgin_core.arrays import Corners, Matrix3, Points
 from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
-from nostalgin_core.rectify import camera, lines, orient, quad, upright, warp
+from nostalgin_core.rectify import camera, foot, lines, orient, quad, upright, warp
 
 STAGE = "rectify"
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
@@ -38,20 +38,33 @@ def rectify(
     if not matted.facades:
         return ()
     oriented = orient.orient(photo, matted.facades, detector=detector)
+    stands = [
+        None if method is None else _stand(photo, facade, oriented.world, rank)
+        for rank, (facade, method) in enumerate(
+            zip(matted.facades, oriented.methods, strict=True)
+        )
+    ]
+    feet = foot.feet(
+        matted.facades, stands, foot.touches(matted.occluders, photo.frame)
+    )
     return tuple(
-        _straighten(photo, facade, oriented, rank)
+        _straighten(photo, facade, oriented, rank, feet[rank])
         for rank, facade in enumerate(matted.facades)
     )
 
 
 def _straighten(
-    photo: Photo, facade: Facade, oriented: orient.Oriented, rank: int
+    photo: Photo,
+    facade: Facade,
+    oriented: orient.Oriented,
+    rank: int,
+    lowest: float | None,
 ) -> Elevation | Rejection:
     """Straighten one front; if its own direction leads nowhere, with a neighbour's."""
     method = oriented.methods[rank]
     if method is None:
         return _rejected(photo, facade, "too few lines")
-    result = elevation(photo, facade, oriented.world, rank, method)
+    result = elevation(photo, facade, oriented.world, rank, method, lowest=lowest)
     if result or method == orient.NEIGHBOUR:
         return result
     sides = orient.outline(photo, facade)
@@ -62,19 +75,25 @@ def _straighten(
 
 
 def elevation(
-    photo: Photo, facade: Facade, world: upright.Upright, rank: int, method: str
+    photo: Photo,
+    facade: Facade,
+    world: upright.Upright,
+    rank: int,
+    method: str,
+    *,
+    lowest: float | None = None,
 ) -> Elevation | Rejection:
-    """Straighten one front with the world's camera."""
+    """Straighten one front with the world's camera, down to `lowest` in its plane."""
     sd_deg = upright.directions_sd_deg(world, rank)
     if sd_deg[0] > MOST_UNSURE_DEG:
         return _rejected(photo, facade, "direction unsure", f"{sd_deg[0]:.1f} degrees")
     points = quad.hull(facade.amodal)
     if len(points) < 3 or np.min(np.ptp(points, axis=0)) < LEAST_SIDE_PX:
         return _rejected(photo, facade, "facade too small")
-    bounded = _bounded(photo, world.parameters, rank, facade, points)
-    if bounded is None:
+    stand = _stand(photo, facade, world, rank)
+    if stand is None:
         return _rejected(photo, facade, "quad degenerate")
-    aspect, corners = bounded
+    aspect, corners = _bounded(photo, world, stand, lowest)
     implausible = _implausible(photo, world, rank, corners, aspect)
     if implausible is not None:
         return _rejected(photo, facade, *implausible)
@@ -143,19 +162,34 @@ def _plane(photo: Photo, parameters: Parameters, rank: int, points: Points) -> M
     return photo_from_camera @ np.column_stack([across, down, [0.0, 0.0, 1.0]])
 
 
-def _bounded(
-    photo: Photo, parameters: Parameters, rank: int, facade: Facade, points: Points
-) -> tuple[float, Corners] | None:
-    """Bound a front: its aspect ratio and its quad, or None if that degenerates."""
-    plane = _plane(photo, parameters, rank, points)
+def _stand(
+    photo: Photo, facade: Facade, world: upright.Upright, rank: int
+) -> foot.Stand | None:
+    """Bound a front in its plane, or None if that degenerates."""
+    points = quad.hull(facade.amodal)
+    if len(points) < 3:
+        return None
+    plane = _plane(photo, world.parameters, rank, points)
     if np.linalg.cond(plane) > MOST_SKEWED:
         return None
     bounds = quad.bounding(plane, points)
     if bounds is None:
         return None
     bounds = quad.trimmed(facade.amodal, plane, bounds)
-    corners = homography.apply(plane, quad.corners_of(bounds))
-    focal = np.exp(parameters[0]) * camera.prior_focal_px(photo.frame)
+    up = upright.axes(world.parameters)[0]
+    azimuth = float(world.parameters[3 + rank])
+    return foot.Stand(plane, bounds, float(up[2]), azimuth)
+
+
+def _bounded(
+    photo: Photo, world: upright.Upright, stand: foot.Stand, lowest: float | None
+) -> tuple[float, Corners]:
+    """Give the aspect ratio and the quad of a front, down to `lowest` if told."""
+    bounds = stand.bounds.copy()
+    if lowest is not None:
+        bounds[3] = lowest
+    corners = homography.apply(stand.photo_from_plane, quad.corners_of(bounds))
+    focal = world.focal * camera.prior_focal_px(photo.frame)
     return camera.aspect(corners, focal, photo.frame), corners
 
 

@@ -41,7 +41,7 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 7,
     "matte": 7,
-    "rectify": 7,
+    "rectify": 8,
     "compare": 1,
     "inpaint": 6,
     "block": 6,
