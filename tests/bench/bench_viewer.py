@@ -3,8 +3,11 @@
 Baseline: a painted city of three blocks. The clock starts with the page and ends with
 the first picture (the page's own mark). Then one walks past a block, flies off, and
 comes to another, as often as `STOPS` says: the memory of a page that lets go of what it
-has left does not grow with them. Chromium without graphics: times are upper bounds,
-and on a busy machine ratios alone are worth something.
+has left does not grow with them, which the last line tells as ratios of the second half
+of the walk to its first, the most of each. "Tiles" are geometries and textures as a
+graphics card would hold them, "buffers" what JavaScript holds beside its heap. Chromium
+without a graphics card: times are upper bounds, and on a busy machine ratios alone are
+worth something; draw calls, triangles and counts are what any card would get.
 
     python tests/bench/bench_viewer.py [BUILDINGS]
 """
@@ -28,6 +31,16 @@ BASELINE = 42  # buildings: three blocks
 ROUNDS = 3
 STOPS = 24
 MIB = 2**20
+COLUMNS = {
+    "calls": "draw calls",
+    "triangles": "triangles",
+    "walls": "models",
+    "kept": "tiles MiB",
+    "geometries": "geometries",
+    "textures": "textures",
+    "heap": "heap MiB",
+    "buffers": "buffers MiB",
+}
 SETTLE = """async () => {
   nostalgin.hold();
   const end = performance.now() + 20000;
@@ -39,8 +52,9 @@ SETTLE = """async () => {
   }
   const { tiles } = nostalgin.page.city;
   const { memory } = nostalgin.page.stage.renderer.info;
-  return { calls: nostalgin.stats.calls, walls: nostalgin.stats.walls,
-    kept: tiles.lruCache.cachedBytes, ...memory };
+  const { calls, triangles, walls } = nostalgin.stats;
+  const kept = tiles.lruCache.cachedBytes / 2 ** 20;
+  return { calls, triangles, walls, kept, ...memory };
 }"""
 
 
@@ -72,26 +86,45 @@ def walked(browser: Any, address: str) -> None:
     spots = page.evaluate(f"nostalgin.page.city.extents.map({middles})")
     session = page.context.new_cdp_session(page)
     session.send("HeapProfiler.enable")
-    print("stop  draw calls  models  tiles MiB  geometries  textures  heap MiB")
+    print("stop    " + "".join(f"{name:>12}" for name in COLUMNS.values()))
+    rows = []
     for stop in range(STOPS):
         x, z = spots[(stop * 97) % len(spots)]
         page.evaluate("nostalgin.setBird(false)")
         page.evaluate(
             "pose => nostalgin.setPose(pose)", {"x": x, "z": z, "yaw": 0, "pitch": 0}
         )
-        own = page.evaluate(SETTLE)
+        told(f"{stop + 1:3}", page.evaluate(SETTLE))
         if stop % 4 == 3:  # and up into the air
             page.evaluate("nostalgin.setBird(true)")
-            air = page.evaluate(SETTLE)
-            session.send("HeapProfiler.collectGarbage")
-            heap = session.send("Runtime.getHeapUsage")["usedSize"] / MIB
-            for name, one in (("", own), (" air", air)):
-                print(
-                    f"{stop + 1:3}{name:4} {one['calls']:9} {one['walls']:7} "
-                    f"{one['kept'] / MIB:10.0f} {one['geometries']:11} "
-                    f"{one['textures']:9} {heap:9.0f}"
-                )
+            rows.append({**page.evaluate(SETTLE), **held(session)})
+            told(f"{stop + 1:3} air", rows[-1])
+    half = len(rows) // 2
+    ratios = [
+        f"{name} {most(rows[half:], key) / max(1, most(rows[:half], key)):.2f} x"
+        for key, name in COLUMNS.items()
+    ]
+    print("second half to first: " + ", ".join(ratios))
     page.close()
+
+
+def most(rows: list[dict[str, float]], key: str) -> float:
+    """Take the most of one column."""
+    return max(row[key] for row in rows)
+
+
+def told(where: str, row: dict[str, float]) -> None:
+    """Print a row; what is not measured at every stop stays empty."""
+    cells = [f"{row[key]:12,.0f}" if key in row else " " * 12 for key in COLUMNS]
+    print(f"{where:8}" + "".join(cells), flush=True)
+
+
+def held(session: Any) -> dict[str, float]:
+    """Measure what JavaScript holds once its garbage is gone, in MiB."""
+    session.send("HeapProfiler.collectGarbage")
+    usage = session.send("Runtime.getHeapUsage")
+    keys = {"heap": "usedSize", "buffers": "backingStorageSize"}
+    return {name: usage[key] / MIB for name, key in keys.items() if key in usage}
 
 
 def main(buildings: int) -> None:

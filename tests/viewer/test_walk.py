@@ -117,6 +117,26 @@ def test_catalogue_text_stays_text(visit: Visit) -> None:
     assert visit.ask("window.hacked === undefined")
 
 
+def test_long_captions_from_right_to_left_stay_on_the_card(visit: Visit) -> None:
+    caption = "שלום רחוב " * 1000
+    visit.ask(f"""(() => {{
+        const found = nostalgin.page.city.buildings.get("1-1");
+        const [photo] = found.record.photos;
+        const photos = [{{ ...photo, caption: {json.dumps(caption)}, date: "1940" }}];
+        nostalgin.page.panel.show({{ ...found, record: {{ ...found.record, photos }} }});
+    }})()""")
+    ways = visit.ask("""[...document.querySelectorAll('#panel figcaption > *')]
+        .map(one => getComputedStyle(one).direction)""")
+    assert ways[0] == "rtl"
+    assert ways[-1] == "ltr"
+    card = visit.page.locator("#panel")
+    box = card.bounding_box()
+    assert box["y"] >= 0
+    assert box["y"] + box["height"] <= 480
+    assert card.evaluate("one => one.scrollWidth <= one.clientWidth")
+    assert caption.strip() in card.inner_text()
+
+
 def test_a_missing_photograph_names_the_remedy(visit: Visit) -> None:
     visit.ask("nostalgin.select('1-7')")
     assert "nostalgin build" in visit.page.locator("#panel figure").inner_text()

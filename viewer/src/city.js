@@ -7,8 +7,9 @@ import { TilesRenderer } from '3d-tiles-renderer';
 import { GLTFExtensionsPlugin } from '3d-tiles-renderer/plugins';
 import { MeshBVH } from 'three-mesh-bvh';
 
+import { bound } from './budget.js';
 import { keysOf } from './evidence.js';
-import { united } from './model.js';
+import { reader, united } from './model.js';
 import { EvidenceVariant, surface, unlock } from './paint.js';
 import { survey } from './survey.js';
 
@@ -188,7 +189,7 @@ export class City {
   #enter(scene, tile) {
     place(scene, this.tiles.group.matrixWorld);
     const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
-    const mesh = united(scene, assumed, this.keys);
+    const mesh = united(scene, assumed);
     if (!mesh) {
       scene.traverse((one) => { // volumes that stand for what is far
         if (one.isMesh) one.material = surface(one);
@@ -200,7 +201,7 @@ export class City {
     mesh.material = surface(mesh);
     this.walls.add(mesh);
     const detail = mesh.material.map?.image?.width ?? 0; // of several models of a building the finest counts
-    for (const [feature, shape] of survey(mesh)) {
+    for (const [feature, shape] of survey(mesh, reader(mesh, this.keys))) {
       const building = this.buildings.get(mesh.userData.ids[feature]);
       if (building && (building.shape === null || detail >= building.detail)) Object.assign(building, { shape, detail });
     }
@@ -225,12 +226,13 @@ export class City {
       for (const [block, meshes] of this.standing) {
         if (!meshes.delete(mesh) || meshes.size) continue;
         this.standing.delete(block);
-        for (const { id } of block.buildings) this.buildings.get(String(id)).detail = 0;
+        for (const { id } of block.buildings) Object.assign(this.buildings.get(String(id)), { shape: null, detail: 0 });
         this.onGone(block);
       }
       mesh.geometry.dispose();
       mesh.material.dispose();
       mesh.userData.evidence?.dispose();
+      mesh.userData.evidence?.image.close?.();
     });
   }
 }
@@ -245,6 +247,7 @@ export async function open(base = '', tell = () => {}) {
   tiles.registerPlugin(
     new GLTFExtensionsPlugin({ plugins: [(parser) => new EvidenceVariant(parser)] }),
   );
+  bound(tiles);
   const city = new City(record, tiles);
   const rooted = new Promise((resolve, reject) => {
     tiles.addEventListener('load-root-tileset', resolve, { once: true });

@@ -41,6 +41,7 @@ export class Finder {
   #row(id, text) {
     const button = document.createElement('button');
     button.type = 'button';
+    button.dir = 'auto';
     button.textContent = text;
     button.addEventListener('click', () => {
       this.dialog.close();

@@ -13,8 +13,8 @@ const INK = '#f8f4ea';
 
 const ON_M = 22; // of the line that a name is written on: there one is on that street
 
-/** A name, and the row of walls that stand on that street; null where `taken` says so. */
-export function label(name, row, taken = () => false) {
+/** Where the name of a street lies, beside the row of walls that stand on it. */
+export function spot(row) {
   const [{ a, out }] = row;
   const right = [out[1], -out[0]];
   const along = ([x, z]) => x * right[0] + z * right[1];
@@ -22,20 +22,22 @@ export function label(name, row, taken = () => false) {
   const end = Math.max(...row.map((wall) => along(wall.b)));
   const depth = a[0] * out[0] + a[1] * out[1] + SIDEWALK_M + FROM_KERB_M;
   const at = (s) => [out[0] * depth + right[0] * s, out[1] * depth + right[1] * s];
-  const [x, z] = at((start + end) / 2);
-  if (taken([x, z])) return null;
-  const { texture, aspect } = written(name);
-  const width = LETTER_M * aspect;
+  const yaw = Math.atan2(out[0], out[1]); // read from the street, facing the fronts
+  return { middle: at((start + end) / 2), yaw, line: [at(start), at(end)] };
+}
+
+/** A name as `written`, in its `spot`. */
+export function label(name, { middle: [x, z], yaw, line }, { texture, aspect }) {
   const plane = new Mesh(
-    new PlaneGeometry(width, LETTER_M).rotateX(-Math.PI / 2),
+    new PlaneGeometry(LETTER_M * aspect, LETTER_M).rotateX(-Math.PI / 2),
     new MeshBasicMaterial({ map: texture, transparent: true, opacity: 0, depthWrite: false, fog: false }),
   );
   plane.position.set(x, 0.05 - KERB_M, z);
-  plane.rotation.y = Math.atan2(out[0], out[1]); // read from the street, facing the fronts
+  plane.rotation.y = yaw;
   plane.renderOrder = 1;
   plane.visible = false;
   plane.name = name;
-  plane.userData.line = [at(start), at(end)];
+  plane.userData.line = line;
   return plane;
 }
 
@@ -67,12 +69,19 @@ export function fade(planes, opacity, distance) {
   }
 }
 
-function written(name) {
+/** Letters set apart by hair spaces, but where they join, as in Arabic, or stand on one another. */
+export function spread(name) {
+  const apart = /^[\p{Script=Latin}\p{Script=Greek}\p{Script=Cyrillic}\p{Script=Common}]*$/u.test(name);
+  return apart ? [...name].join('\u200a') : name;
+}
+
+/** A name in letters: `{ texture, aspect }`. */
+export function written(name) {
   const canvas = document.createElement('canvas');
   const context = canvas.getContext('2d');
   const font = '600 72px Garamond, Georgia, serif';
   context.font = font;
-  const spaced = name.toUpperCase().split('').join('\u200a');
+  const spaced = spread(name.toUpperCase());
   canvas.width = Math.min(2048, Math.ceil(context.measureText(spaced).width) + 48);
   canvas.height = 112;
   context.font = font;

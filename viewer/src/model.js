@@ -3,17 +3,17 @@
 import { BufferAttribute, Mesh } from 'three';
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 
-import { codeOf } from './evidence.js';
+import { ASSUMED, NOTHING, codeOf } from './evidence.js';
 
-const SAMPLE_PX = 1024; // the evidence atlas is read at no more than this
+const SAMPLE_PX = 1024; // a survey reads the evidence atlas at no more than this
 
 /**
  * Replaces all meshes of a loaded model by one, and returns it; null where there is none.
  *
- * `keys` are the colours of the evidence's codes. Its `userData` holds `ids` (building id by feature number), `evidence` (the texture) and
- * `codeAt(u, v)`; each vertex says as `assumed` whether its whole building is.
+ * Its `userData` holds `ids` (building id by feature number) and `evidence` (the texture);
+ * each vertex says as `assumed` whether its whole building is.
  */
-export function united(scene, assumed, keys) {
+export function united(scene, assumed) {
   const parts = [];
   scene.traverse((mesh) => mesh.isMesh && mesh.geometry.attributes._feature_id_0 && parts.push(mesh));
   if (!parts.length) return null;
@@ -29,7 +29,7 @@ export function united(scene, assumed, keys) {
   });
   const mesh = new Mesh(mergeGeometries(geometries), first.material);
   const { evidence } = first.userData;
-  mesh.userData = { ids, evidence, codeAt: evidence ? reader(evidence.image, keys) : () => 6 };
+  mesh.userData = { ids, evidence };
   for (const part of parts) part.removeFromParent();
   scene.add(mesh);
   return mesh;
@@ -51,19 +51,34 @@ function idsOf(mesh, parts) {
   return ids;
 }
 
-/** A function that tells the evidence code at a texture coordinate. */
-function reader(image, keys) {
+/**
+ * A function that tells a mesh's evidence code at a texture coordinate, read once and so
+ * for many of them. It holds megabytes: let go of it. `keys` are the colours of the codes.
+ */
+export function reader({ userData: { evidence } }, keys) {
+  if (!evidence) return () => ASSUMED;
+  const { image } = evidence;
   const scale = Math.min(1, SAMPLE_PX / Math.max(image.width, image.height));
   const [width, height] = [image.width, image.height].map((size) => Math.max(1, Math.round(size * scale)));
-  const canvas = new OffscreenCanvas(width, height);
-  const context = canvas.getContext('2d', { willReadFrequently: true });
+  const data = pixels(image, [0, 0, image.width, image.height], width, height);
+  return (u, v) => coded(data, 4 * (texel(v, height) * width + texel(u, width)), keys);
+}
+
+/** A mesh's evidence code at one texture coordinate, to the texel; it keeps nothing. */
+export function codeAt({ userData: { evidence } }, { x: u, y: v }, keys) {
+  if (!evidence) return ASSUMED;
+  const { image } = evidence;
+  return coded(pixels(image, [texel(u, image.width), texel(v, image.height), 1, 1], 1, 1), 0, keys);
+}
+
+const texel = (share, size) => Math.min(size - 1, Math.max(0, Math.floor(share * size)));
+
+const coded = (data, at, keys) => (data[at + 3] < 128 ? NOTHING : codeOf(keys, data[at], data[at + 1], data[at + 2]));
+
+/** A part of an image at another size, red, green, blue, alpha; the nearest texel counts. */
+function pixels(image, part, width, height) {
+  const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
   context.imageSmoothingEnabled = false;
-  context.drawImage(image, 0, 0, width, height);
-  const { data } = context.getImageData(0, 0, width, height);
-  return (u, v) => {
-    const x = Math.min(width - 1, Math.max(0, Math.floor(u * width)));
-    const y = Math.min(height - 1, Math.max(0, Math.floor(v * height)));
-    const at = 4 * (y * width + x);
-    return data[at + 3] < 128 ? 0 : codeOf(keys, data[at], data[at + 1], data[at + 2]);
-  };
+  context.drawImage(image, ...part, 0, 0, width, height);
+  return context.getImageData(0, 0, width, height).data;
 }

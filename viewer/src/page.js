@@ -116,7 +116,7 @@ export class Page {
       if (!shape || !street || (fronts ?? [0]).length !== 1) continue;
       streets.set(street, [...(streets.get(street) ?? []), frontFor(this.city, shape)]);
     }
-    for (const [street, walls] of streets) this.stage.inscribe(street, rows(walls)[0]);
+    for (const [street, walls] of streets) this.stage.inscribe(block, street, rows(walls)[0]);
   }
 
   frame(time) {

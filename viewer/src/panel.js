@@ -24,7 +24,7 @@ export class Panel {
   show({ record, block, shape }, here = null) {
     if (!this.open) this.before = document.activeElement;
     const name = nameOf(record);
-    const heading = make('h2', { id: 'panel-name', textContent: name });
+    const heading = make('h2', { id: 'panel-name', textContent: name, dir: 'auto' });
     const where = [record.block_title ?? `Block ${block.block}`, record.lot && `Lot ${record.lot}`];
     const close = make('button', { className: 'close', title: 'Close (Esc)', textContent: '×' });
     close.setAttribute('aria-label', 'Close');
@@ -87,8 +87,8 @@ function figure({ key, file, credit, caption, date, rights, license, source_url:
   const other = used === false ? 'Not the one on the model.' : null;
   const neighbours = lent ? 'Taken of a neighbour; it shows this front too.' : null;
   const words = [[caption, date].filter(Boolean).join(', '), neighbours, other, rights, license].filter(Boolean);
-  const lines = words.map((text) => make('span', { textContent: text }));
-  if (credit) lines.push(make('cite', { textContent: credit }));
+  const lines = words.map((text) => make('span', { textContent: text, dir: 'auto' })); // each its own way
+  if (credit) lines.push(make('cite', { textContent: credit, dir: 'auto' }));
   if (source) lines.push(link('The archive’s record', source));
   if (lines.length) holder.append(make('figcaption', {}, lines));
   return holder;

@@ -2,7 +2,8 @@
 
 import { Raycaster, Vector2, Vector3 } from 'three';
 
-import { nameOfCode } from './evidence.js';
+import { ASSUMED, nameOfCode } from './evidence.js';
+import { codeAt } from './model.js';
 import { nameOf } from './words.js';
 
 const FAR_M = 80; // beyond, a front is not faced but seen
@@ -18,7 +19,7 @@ export function picked(city, camera, x, y) {
   const hit = first(city);
   if (!hit) return null;
   const { found: { block, record } } = hit;
-  const code = hit.uv ? hit.object.userData.codeAt(hit.uv.x, hit.uv.y) : 6;
+  const code = hit.uv ? codeAt(hit.object, hit.uv, city.keys) : ASSUMED;
   return { ...record, block: block.block, distance: hit.distance, evidence: nameOfCode(code) };
 }
 

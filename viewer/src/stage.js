@@ -7,7 +7,7 @@ import {
 import { acceleratedRaycast } from 'three-mesh-bvh';
 
 import { outlineOf, paved, pavement, shade, street } from './ground.js';
-import { fade, label, nearestName, repeated } from './labels.js';
+import { Names } from './names.js';
 import { Props } from './props.js';
 import { HORIZON, sky } from './sky.js';
 
@@ -38,10 +38,15 @@ export class Stage {
     this.raised = [];
     this.paved = new Set(); // names of blocks
     this.settled = new Map(); // name of a block -> what lies at its feet
-    this.names = []; // of streets
+    this.signs = new Names(this.scene); // streets' names
     this.chosen = null;
     this.lag = 0;
     this.sharpness = 1;
+  }
+
+  /** The streets' names that stand. */
+  get names() {
+    return this.signs.planes;
   }
 
   /** What the eyes of a walker hold. */
@@ -83,7 +88,7 @@ export class Stage {
   draw(height, feet, { over = false, low = false } = {}) {
     const { camera } = this;
     this.scene.fog.density = over ? 0 : HAZE * (1 - 0.9 * height);
-    fade(this.names, height, camera.position.y);
+    this.signs.fade(height, camera.position.y);
     this.props.group.visible = !over;
     this.ground.visible = !low;
     this.props.gather(feet, this.raised);
@@ -116,7 +121,7 @@ export class Stage {
   /** Adds what is known of a block only once its model is there. */
   settle(block, shapes) {
     this.paveAll([[block.name, [outlineOf(shapes)]]]);
-    this.unsettle(block); // a finer model may have come
+    this.#sweep(block); // a finer model may have come
     const feet = [shade(shapes.flatMap(({ walls }) => walls)), edges(shapes, INK, 0.35)];
     this.settled.set(block.name, feet);
     this.ground.add(...feet);
@@ -125,6 +130,11 @@ export class Stage {
 
   /** Takes away what came with a block's model. */
   unsettle(block) {
+    this.#sweep(block);
+    this.signs.erase(block.name);
+  }
+
+  #sweep(block) {
     for (const one of this.settled.get(block.name) ?? []) {
       this.ground.remove(one);
       one.geometry.dispose();
@@ -133,18 +143,14 @@ export class Stage {
     this.settled.delete(block.name);
   }
 
-  /** Writes a street's name beside the walls that stand on it. */
-  inscribe(name, row) {
-    if (!row) return;
-    const plane = label(name, row, (place) => repeated(name, place, this.names));
-    if (!plane) return;
-    this.names.push(plane);
-    this.scene.add(plane);
+  /** Writes a street's name beside a block's walls that stand on it. */
+  inscribe(block, name, row) {
+    if (row) this.signs.write(block.name, name, row);
   }
 
   /** The street on which the feet stand, or an empty word. */
-  streetAt({ x, z }) {
-    return nearestName(this.names, [x, z]);
+  streetAt(feet) {
+    return this.signs.at(feet);
   }
 
   /** Draws a line round one building, or none. */
@@ -152,6 +158,7 @@ export class Stage {
     if (this.chosen) {
       this.scene.remove(this.chosen);
       this.chosen.geometry.dispose();
+      this.chosen.material.dispose();
     }
     this.chosen = shape ? edges([shape], 0xf4d58a, 1) : null;
     if (this.chosen) this.scene.add(this.chosen);

@@ -7,13 +7,13 @@ const SAME_PLANE_M = 0.05;
 const RANK = { plain: 0, copied: 1, own: 2 };
 
 /**
- * Map from feature number to `{ walls, roofs, top, roof }` (heights of the two last), in the frame of the world.
+ * `codeAt(u, v)` tells the mesh's evidence, see `reader`. Map from feature number to `{ walls, roofs, top, roof }` (heights of the two last), in the frame of the world.
  *
  * A wall is `{ a, b, out, bottom, top, kind }`: the ends of its foot as [x, z], seen from
  * outside a lies on the left; `out` is its outward normal as [x, z]; `kind` is 'own' where
  * it wears its own photograph, else 'copied' or 'plain'. A roof is three [x, z].
  */
-export function survey(mesh) {
+export function survey(mesh, codeAt) {
   const found = new Map();
   const { position, uv, _feature_id_0: features } = mesh.geometry.attributes;
   if (!features) return found;
@@ -36,7 +36,7 @@ export function survey(mesh) {
       shape.roofs.push(corners.map((c) => [c.x, c.z]));
       shape.roof = Math.max(shape.roof, corners[0].y);
     }
-    if (Math.abs(normal.y) <= STEEP) addWall(shape.planes, corners, normal, kindOf(mesh, uv, rows));
+    if (Math.abs(normal.y) <= STEEP) addWall(shape.planes, corners, normal, kindOf(codeAt, uv, rows));
   }
   for (const [feature, { planes, roofs, top, roof }] of found) {
     found.set(feature, { walls: [...planes.values()].map(footOf), roofs, top, roof });
@@ -45,9 +45,8 @@ export function survey(mesh) {
 }
 
 /** What a triangle wears, told by the evidence at a few of its texels. */
-function kindOf(mesh, uv, rows) {
-  const { codeAt } = mesh.userData;
-  if (!uv || !codeAt) return 'plain';
+function kindOf(codeAt, uv, rows) {
+  if (!uv) return 'plain';
   const codes = [[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [3, 3, 1], [1, 3, 3]].map((weights) => {
     const sum = weights[0] + weights[1] + weights[2];
     const at = (get) => rows.reduce((total, row, k) => total + get.call(uv, row) * weights[k], 0) / sum;

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { everybody, web } from '../src/credit.js';
-import { nearestName, repeated } from '../src/labels.js';
+import { nearestName, repeated, spread } from '../src/labels.js';
 import { upright } from '../src/minimap.js';
 import { along } from '../src/props.js';
 import { nameFor } from '../src/shot.js';
@@ -62,6 +62,12 @@ test('a street is the one whose line is nearest, if it is near', () => {
   assert.equal(nearestName(planes, [200, 0]), '');
   assert.equal(nearestName([], [0, 0]), '');
   assert.ok(repeated('Broad', [50, 60], planes) && !repeated('Broad', [50, 160], planes));
+});
+
+test('letters that join are not set apart, and none is cut in two', () => {
+  assert.equal(spread('AB 1'), 'A\u200aB\u200a \u200a1');
+  for (const name of ['شارع الملك', 'รัก', 'नगर']) assert.equal(spread(name), name);
+  assert.ok(spread('A𝕊').includes('𝕊'));
 });
 
 test('what is faced is named with its distance, else the street', () => {
