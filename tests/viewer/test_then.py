@@ -118,6 +118,16 @@ def test_a_link_with_a_building_alone_leads_before_it(
     fresh.page.close()
 
 
+@pytest.mark.parametrize("link", ["#993-12", "#building=9-9", "#at=1,2,3"])
+def test_a_link_that_leads_nowhere_begins_where_the_city_does(
+    browser: Any, address: str, link: str
+) -> None:
+    plain, lost = (Visit(browser, f"{address}{end}").arrive() for end in ("", link))
+    assert lost.ask("nostalgin.pose") == plain.ask("nostalgin.pose")
+    for one in (plain, lost):
+        one.page.close()
+
+
 def test_what_is_faced_is_named_and_seen_whole(visit: Visit) -> None:
     ids = visit.ask("[...nostalgin.page.city.buildings.keys()]")
     faced = [

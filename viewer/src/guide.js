@@ -153,7 +153,7 @@ export class Guide {
     this.awaited = this.wanted = null;
   }
 
-  /** Shows what a link names: a pose, a building, a photograph, or several of them. */
+  /** Shows what a link names: a pose, a building, a photograph, or several; tells whether it leads anywhere. */
   follow(hash) {
     const { page } = this;
     const { pose, building, then, evidence, bird } = fromHash(hash);
@@ -167,6 +167,7 @@ export class Guide {
     if (known) page.select(building);
     else page.panel.close();
     if (known && then) this.enter(building, then);
+    return pose !== null || known;
   }
 
   step(dt) {

@@ -66,8 +66,7 @@ export class Page {
     this.resize();
     const { x, z } = city.middle();
     this.walker.pose = { x, z, yaw: 0, pitch: 0 };
-    const linked = location.hash.length > 1;
-    if (linked) this.guide.follow(location.hash);
+    const linked = location.hash.length > 1 && this.guide.follow(location.hash);
     const { near, far } = city.ground(this.walker.feet, PAVED_M);
     stage.paveAll(near);
     const settled = this.firstBlock(linked);
