@@ -52,7 +52,7 @@ def _likely(spot: Spot, where: tuple[Along, int] | None, known: Faces) -> list[s
         number = _between(spot, side, place, known)
         if number and street:
             likely.append(f"{number} {street}")
-    return likely
+    return list(dict.fromkeys(likely))
 
 
 def _between(spot: Spot, side: Along, place: int, known: Faces) -> str:

@@ -4,6 +4,7 @@ In: events, counts, exceptions. Out: a terminal's lines, or JSON for machines.
 It knows what there is to tell; none of those who tell know it. Open `voice` first.
 """
 
+from pipelines.console.alike import folded
 from pipelines.console.failure import (
     echo,
     errors,
@@ -23,6 +24,7 @@ __all__ = [
     "echo",
     "errors",
     "fail",
+    "folded",
     "hushed",
     "indexed",
     "opened_streams",

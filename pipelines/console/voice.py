@@ -2,13 +2,13 @@
 
 import json
 import sys
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
 
+from pipelines.console.alike import folded
 from pipelines.console.failure import echo, fail, harmless, unheard
 
 if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
@@ -17,7 +17,6 @@ if TYPE_CHECKING:  # Beam is slow to load, and a voice is needed before it
 
 MOST_LINES: Final = 30  # of rejections, to a reader; all are in the run's table
 MOST_LETTERS: Final = 2000  # of a line to people, as ten thousand hide the others
-MOST_NAMES: Final = 8  # of those that were rejected alike
 GRAVE: Final = frozenset(("homeless", "held"))  # which the exit code tells, too
 
 
@@ -75,24 +74,11 @@ def told_rejections(rejections: Iterable[Mapping[str, Any]], voice: Voice) -> No
         for one in rejections:
             voice.say("rejected", "", **one)
         return
-    alike: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
-    count: Counter[tuple[str, ...]] = Counter()
-    for one in rejections:  # what names itself in its detail is alike but for its name
-        key = one["key"]
-        detail = one["detail"].replace(key, "it") if key else one["detail"]
-        why = (one.get("stage", ""), one["reason"], detail)
-        count[why] += 1
-        if count[why] <= MOST_NAMES:
-            alike.setdefault(why, []).append(one)
-    for (stage, reason, detail), some in list(alike.items())[:MOST_LINES]:
-        names, whole = ", ".join(x["key"] for x in some), count[stage, reason, detail]
-        if whole > MOST_NAMES:
-            names = f"{whole} ({names} ...)"
-        words = some[0]["detail"] if whole == 1 else detail
-        why = ": ".join(filter(None, (stage, reason, words)))
-        voice.say("rejected", f"rejected {names}: {why}")
-    if len(alike) > MOST_LINES:
-        words = f"and for {len(alike) - MOST_LINES} other reasons; --json tells all"
+    lines = folded(rejections)
+    for line in lines[:MOST_LINES]:
+        voice.say("rejected", f"rejected {line}")
+    if len(lines) > MOST_LINES:
+        words = f"and for {len(lines) - MOST_LINES} other reasons; --json tells all"
         voice.say("rejected", words)
 
 

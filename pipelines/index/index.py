@@ -10,7 +10,7 @@ from typing import Final
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Catalogue, Entry
 from nostalgin_core.records import Front, Rejection
-from pipelines.index import lists, manifest, readings
+from pipelines.index import lists, manifest, readings, warned
 from pipelines.index.anchors import Asked, taken
 from pipelines.index.columns import cells_of
 from pipelines.index.images import Nothing, images, spelt_out
@@ -153,6 +153,7 @@ def put(store: Store, made: Draft, mended: tuple[str, bytes] | None) -> Indexed:
         store.write_bytes(name, data)
     readings.write(store, pictured(store, made.heard))
     told = made.indexed
+    warned.write(store, told.rejections, told.warnings)
     return replace(told, warnings=(*told.warnings, *kept))
 
 

@@ -132,7 +132,7 @@ form.addEventListener("click", ({ target }) => {
   const article = target.closest("article");
   if (target.dataset.draw) shapes.find((one) => one.what === target.dataset.draw && article.contains(one.group)).fresh();
   if (target.dataset.take) {
-    article.querySelector("input[data-what=key]").value = target.dataset.take;
+    document.getElementById(target.dataset.into).value = target.dataset.take;
     told();
   }
 });

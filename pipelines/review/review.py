@@ -19,6 +19,7 @@ from pipelines.corrections.corrections import CORRECTION_BYTES, LINES
 from pipelines.index import manifest
 from pipelines.index.roots import located, rooted
 from pipelines.index.row import Row
+from pipelines.review.doubts import Told, told
 from pipelines.review.readings import Reading, readings
 from pipelines.store import Store
 from pipelines.store.versions import Versions
@@ -56,6 +57,7 @@ class Review:
     findings: Mapping[str, tuple[Finding, ...]]  # by kind, the first of each
     counts: Mapping[str, int]  # of findings, by kind
     verdicts: Mapping[str, int]  # of readings
+    warned: Told  # by `index`
     given: str  # corrections.jsonl as it is
 
 
@@ -65,10 +67,9 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
     Raises:
         Unusable: if the manifest can't be read.
     """
-    told = check.check(store, pictures=False)
     by_row: dict[str, list[Finding]] = defaultdict(list)
     kinds: dict[str, list[Finding]] = defaultdict(list)
-    for one in told:
+    for one in check.check(store, pictures=False):
         by_row[one.row].append(one)
         kinds[one.kind].append(one)
     read = readings(store)
@@ -96,6 +97,7 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
         findings={kind: tuple(some[:MOST_OF_A_KIND]) for kind, some in kinds.items()},
         counts={kind: len(some) for kind, some in kinds.items()},
         verdicts=Counter(one.verdict for one in read.values()),
+        warned=told(store, made.rows),
         given=lines(store),
     )
 
