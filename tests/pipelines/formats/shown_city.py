@@ -1,9 +1,12 @@
 """A painted city of two blocks that is published, on a plane or on the globe."""
 
+import io
+import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import trimesh
 
 from nostalgin_core import city, model
 from nostalgin_core.block import Settled, raised
@@ -13,6 +16,9 @@ from pipelines.site import site
 from pipelines.site.record import record
 from tests.core import sample_block
 
+Json = dict[str, Any]
+
+BASE = "https://archive.example/city"
 MIDTOWN = city.Place(-73.9868, 40.7549, 12.0)
 ARCHIVE = Rights("An Archive", "CC0", ("https://archive.example/1",))
 LONG = "שָׁלוֹם רחוב " * 800  # ten thousand letters from right to left
@@ -82,3 +88,18 @@ def published(
         viewer=viewer,
     )
     return folder / "city"
+
+
+def lines(out: Path, block: str) -> list[Json]:
+    path = out / "cityjson" / f"{block}.city.jsonl"
+    return [json.loads(line) for line in path.read_text().splitlines()]
+
+
+def site_record(city: Path) -> Json:
+    return json.loads((city / "site/site.json").read_text())
+
+
+def glb(city: Path, block: str) -> trimesh.Scene:
+    (one,) = (o for o in site_record(city)["blocks"] if o["name"] == block)
+    data = (city / "site" / one["uri"]).read_bytes()
+    return trimesh.load(io.BytesIO(data), file_type="glb")

@@ -1,70 +1,19 @@
 """What is exported equals what is shown, and programs we did not write read it."""
 
-import io
 import json
-import subprocess
 import zipfile
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
-import shapely
-import trimesh
 from PIL import Image
-from pyproj import Geod
-from scipy.spatial import cKDTree
 
-from nostalgin_core import evidence, formats, rests
 from pipelines.formats import Unexportable, export
 from pipelines.site import Foreign
 from tests.core import sample_block
 from tests.pipelines.formats import shown_city
-from tests.pipelines.formats.readers import CJVAL, told
-
-Json = dict[str, Any]
-BASE = "https://archive.example/city"
-
-
-@pytest.fixture(scope="module")
-def city(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Publish two painted blocks on the globe."""
-    folder = tmp_path_factory.mktemp("globe")
-    one, two = (shown_city.block_model(n, (0.0, 90.0 * int(n))) for n in "12")
-    return shown_city.published(folder, one, two, place=shown_city.MIDTOWN)
-
-
-@pytest.fixture(scope="module")
-def out(city: Path) -> Path:
-    folder = city.parent / "out"
-    export(city, folder, ("cityjson", "obj", "geojson", "iiif"), base=BASE)
-    return folder
-
-
-def lines(out: Path, block: str) -> list[Json]:
-    path = out / "cityjson" / f"{block}.city.jsonl"
-    return [json.loads(line) for line in path.read_text().splitlines()]
-
-
-def site_record(city: Path) -> Json:
-    return json.loads((city / "site/site.json").read_text())
-
-
-def glb(city: Path, block: str) -> trimesh.Scene:
-    (one,) = (o for o in site_record(city)["blocks"] if o["name"] == block)
-    data = (city / "site" / one["uri"]).read_bytes()
-    return trimesh.load(io.BytesIO(data), file_type="glb")
-
-
-def unzipped(out: Path, folder: Path, block: str) -> Path:
-    with zipfile.ZipFile(out / "obj" / f"{block}.zip") as file:
-        file.extractall(folder)
-    return folder
-
-
-def features(out: Path) -> list[Json]:
-    return json.loads((out / "geojson/footprints.geojson").read_text())["features"]
+from tests.pipelines.formats.readers import told
+from tests.pipelines.formats.shown_city import BASE, lines, site_record
 
 
 def tree(folder: Path) -> dict[str, bytes]:
@@ -73,179 +22,6 @@ def tree(folder: Path) -> dict[str, bytes]:
         for one in sorted(folder.rglob("*"))
         if one.is_file()
     }
-
-
-def test_an_obj_has_the_glb_s_triangles_and_area(
-    city: Path, out: Path, tmp_path: Path
-) -> None:
-    unzipped(out, tmp_path, "1")
-    assert [one.name for one in tmp_path.glob("*.obj")] == ["1.obj"]
-    assert [one.name for one in tmp_path.glob("*.mtl")] == ["1.mtl"]
-    obj = trimesh.load_scene(tmp_path / "1.obj", process=False, split_objects=True)
-    shown = glb(city, "1")
-    named = {name.removesuffix("_photograph"): m for name, m in obj.geometry.items()}
-    assert set(named) == set(shown.geometry)
-    for name, mesh in shown.geometry.items():
-        other = named[name]
-        assert other.area == pytest.approx(mesh.area, rel=1e-4)
-        np.testing.assert_allclose(other.bounds, mesh.bounds, atol=1e-4)
-        assert cKDTree(other.vertices).query(mesh.vertices)[0].max() < 1e-4
-        assert cKDTree(mesh.vertices).query(other.vertices)[0].max() < 1e-4
-
-
-def test_an_obj_wears_the_photographs_the_right_way_up(
-    city: Path, out: Path, tmp_path: Path
-) -> None:
-    unzipped(out, tmp_path, "1")
-    obj = trimesh.load(tmp_path / "1.obj", process=False, force="mesh")
-    one, two = (
-        np.column_stack([mesh.vertices, mesh.visual.uv])
-        for mesh in (obj, glb(city, "1").to_geometry())
-    )
-    assert cKDTree(one).query(two)[0].max() < 1e-3
-    assert cKDTree(two).query(one)[0].max() < 1e-3
-    sizes = set()
-    for name in ("1.png", "1-opacity.png", "1-evidence.png"):
-        with Image.open(tmp_path / name) as picture:
-            sizes.add(picture.size)
-    assert len(sizes) == 1
-
-
-def test_cityjson_has_the_glb_s_corners_in_metres_of_utm(city: Path, out: Path) -> None:
-    first, *others = lines(out, "1")
-    assert first["metadata"]["referenceSystem"].endswith("/EPSG/0/32618")
-    ids = {one["id"] for one in others}
-    shown = glb(city, "1")
-    assert ids == set(shown.geometry)
-    for one in others:
-        points = np.array(one["vertices"]) * first["transform"]["scale"]
-        mesh = shown.geometry[one["id"]]
-        height = np.ptp(points[:, 2])
-        assert height == pytest.approx(np.ptp(mesh.vertices[:, 1]), abs=2e-3)
-        spans = (
-            shapely.MultiPoint(points[:, :2]).convex_hull.area,
-            shapely.MultiPoint(mesh.vertices[:, [0, 2]]).convex_hull.area,
-        )
-        assert spans[0] == pytest.approx(spans[1], rel=3e-3)  # UTM's own scale
-
-
-def test_cityjson_names_what_is_wall_roof_and_ground(out: Path) -> None:
-    for one in lines(out, "1")[1:]:
-        (building,) = one["CityObjects"].values()
-        solid, shown = building["geometry"]
-        assert (solid["type"], solid["lod"]) == ("Solid", "1.2")
-        assert (shown["type"], shown["lod"]) == ("MultiSurface", "2.0")
-        kinds = [each["type"] for each in shown["semantics"]["surfaces"]]
-        found = {kinds[value] for value in shown["semantics"]["values"]}
-        assert found == {"WallSurface", "RoofSurface", "GroundSurface"}
-        assert set(shown["texture"]) == {"photograph", "evidence"}
-        for image in one["appearance"]["textures"]:
-            assert (out / "cityjson" / image["image"]).is_file()
-
-
-@pytest.mark.skipif(CJVAL is None, reason="no cjval: set NOSTALGIN_CJVAL")
-@pytest.mark.parametrize("block", ["1", "2"])
-def test_the_official_validator_of_cityjson_finds_no_error(
-    out: Path, block: str
-) -> None:
-    data = (out / "cityjson" / f"{block}.city.jsonl").read_bytes()
-    done = subprocess.run(
-        [CJVAL or ""], input=data, cwd=out / "cityjson", capture_output=True, check=True
-    )
-    count = len(lines(out, block))
-    assert f"invalid:  0/{count}" in done.stdout.decode()
-    assert f"warnings: 0/{count}" in done.stdout.decode()
-    spoiled = data.replace(b'"Building"', b'"Castle"')
-    done = subprocess.run(
-        [CJVAL or ""], input=spoiled, capture_output=True, check=False
-    )
-    assert f"invalid:  {count - 1}/{count}" in done.stdout.decode()
-
-
-CJIO = """
-import json, sys
-from cjio import cityjson
-rows = [json.loads(line) for line in open(sys.argv[1], encoding="utf-8")]
-model = cityjson.CityJSON(j=rows[0])
-for row in rows[1:]:
-    model.add_cityjsonfeature(row)
-model.remove_duplicate_vertices()
-info = model.get_info(long=True)
-print(json.dumps({"count": model.number_city_objects_level1(),
-    "textures": len(model.j["appearance"]["textures"]),
-    "epsg": model.get_epsg()}))
-"""
-
-
-def test_cjio_joins_the_sequence(out: Path) -> None:
-    read = told("cjio", CJIO, str(out / "cityjson/1.city.jsonl"))
-    assert read["count"] == len(lines(out, "1")) - 1
-    assert read["epsg"] == 32618
-    assert read["textures"] >= 2
-
-
-GDAL = """
-import json, sys
-import pyogrio.raw
-meta, _, shapes, fields = pyogrio.raw.read(sys.argv[1])[:4]
-names = list(meta["fields"])
-print(json.dumps({"crs": meta["crs"], "count": len(shapes),
-    "heights": [float(v) for v in fields[names.index("height_m")]]}))
-"""
-
-
-def test_gdal_reads_the_footprints_with_their_heights(city: Path, out: Path) -> None:
-    read = told("pyogrio", GDAL, str(out / "geojson/footprints.geojson"))
-    assert read["crs"] == "EPSG:4326"
-    shown = [m for b in "12" for m in glb(city, b).geometry.values()]
-    heights = sorted(float(mesh.bounds[1, 1]) for mesh in shown)
-    assert sorted(read["heights"]) == pytest.approx(heights, abs=2e-3)
-    assert read["count"] == len(shown)
-
-
-def test_footprints_are_anticlockwise_and_as_large_as_on_the_ground(
-    city: Path, out: Path
-) -> None:
-    globe = Geod(ellps="WGS84")
-    for one in features(out):
-        polygon = shapely.geometry.shape(one["geometry"])
-        assert polygon.is_valid
-        assert polygon.exterior.is_ccw
-        area, _ = globe.geometry_area_perimeter(polygon)
-        block = one["properties"]["block"]
-        mesh = glb(city, block).geometry[one["id"]]
-        floor = mesh.face_normals[:, 1] < -0.5
-        assert area == pytest.approx(mesh.area_faces[floor].sum(), rel=2e-3)
-
-
-def test_evidence_shares_are_those_of_the_texels(city: Path, out: Path) -> None:
-    """Count the texels again, by another reader's coordinates."""
-    shown = glb(city, "1")
-    (one,) = (o for o in site_record(city)["blocks"] if o["name"] == "1")
-    codes = formats.read((city / "site" / one["uri"]).read_bytes()).evidence
-    h, w = codes.shape
-    words = ("photographed", "soft_edge", "inpainted", "beyond_frame", "copied")
-    for feature in features(out):
-        if feature["properties"]["block"] != "1":
-            continue
-        mesh = shown.geometry[feature["id"]]
-        counts = np.zeros(8)
-        walls = np.flatnonzero(np.abs(mesh.face_normals[:, 1]) <= 0.5)
-        for face in walls:
-            u, v = mesh.visual.uv[mesh.faces[face]].T
-            xs = np.round([u.min() * w, u.max() * w]).astype(int)
-            ys = np.round([(1 - v.max()) * h, (1 - v.min()) * h]).astype(int)
-            tile = codes[ys[0] : ys[1], xs[0] : xs[1]]
-            share = np.bincount(tile.ravel(), minlength=8) / tile.size
-            counts += share * mesh.area_faces[face]
-        counts[evidence.NOTHING] = 0
-        counts /= counts.sum()
-        told_shares = [feature["properties"][f"evidence_{word}"] for word in words]
-        np.testing.assert_allclose(told_shares, counts[1:6], atol=2e-4)
-        another = feature["properties"]["evidence_another_picture"]
-        assert another == pytest.approx(counts[rests.ANOTHER], abs=2e-4)
-        whole = sum(told_shares) + another + feature["properties"]["evidence_assumed"]
-        assert whole == pytest.approx(1.0, abs=5e-4)
 
 
 IIIF = """
@@ -258,12 +34,12 @@ print(json.dumps({"type": made.type, "items": len(made.items),
 """
 
 
-def test_a_iiif_library_reads_the_manifest(city: Path, out: Path) -> None:
+def test_a_iiif_library_reads_the_manifest(globe: Path, out: Path) -> None:
     read = told("iiif_prezi3", IIIF, str(out / "iiif/manifest.json"))
     shown = {key for key, _ in sample_block.elevations("1")}
     assert (read["type"], read["items"]) == ("Manifest", len(shown))
     file = read["first"]["id"].removeprefix(f"{BASE}/")
-    with Image.open(city / "site" / file) as picture:
+    with Image.open(globe / "site" / file) as picture:
         assert picture.size == (read["first"]["width"], read["first"]["height"])
 
 
@@ -283,16 +59,16 @@ print(json.dumps(uris))
 """
 
 
-def test_py3dtiles_finds_every_block_in_the_tileset(city: Path) -> None:
-    uris = told("py3dtiles", TILES, str(city / "site/tileset.json"))
-    blocks = site_record(city)["blocks"]
+def test_py3dtiles_finds_every_block_in_the_tileset(globe: Path) -> None:
+    uris = told("py3dtiles", TILES, str(globe / "site/tileset.json"))
+    blocks = site_record(globe)["blocks"]
     wanted = {one[name] for one in blocks for name in ("uri", "coarse")}
     assert {uri.removeprefix("./") for uri in uris} == wanted
 
 
-def test_the_same_city_gives_the_same_bytes(city: Path, out: Path) -> None:
-    again = city.parent / "again"
-    export(city, again, ("cityjson", "obj", "geojson", "iiif"), base=BASE)
+def test_the_same_city_gives_the_same_bytes(globe: Path, out: Path) -> None:
+    again = globe.parent / "again"
+    export(globe, again, ("cityjson", "obj", "geojson", "iiif"), base=BASE)
     assert tree(again) == tree(out)
 
 
@@ -322,18 +98,18 @@ def test_a_city_without_a_place_has_no_geojson_but_all_else(tmp_path: Path) -> N
     ],
 )
 def test_what_can_t_be_told_is_refused_before_anything_is_written(
-    city: Path, tmp_path: Path, wanted: tuple[str, ...], base: str, why: str
+    globe: Path, tmp_path: Path, wanted: tuple[str, ...], base: str, why: str
 ) -> None:
     with pytest.raises(Unexportable, match=why):
-        export(city, tmp_path / "out", wanted, base=base)
+        export(globe, tmp_path / "out", wanted, base=base)
     assert not (tmp_path / "out").exists()
 
 
-def test_a_stranger_s_file_is_not_touched(city: Path, tmp_path: Path) -> None:
+def test_a_stranger_s_file_is_not_touched(globe: Path, tmp_path: Path) -> None:
     (tmp_path / "obj").mkdir()
     (tmp_path / "obj/1.zip").write_text("mine")
     with pytest.raises(Foreign):
-        export(city, tmp_path, ("obj",))
+        export(globe, tmp_path, ("obj",))
     assert tree(tmp_path) == {"obj/1.zip": b"mine"}
 
 
