@@ -21,6 +21,7 @@ from apache_beam.options.pipeline_options import PipelineOptions
 
 from nostalgin_core import placard
 from nostalgin_core.records import Instance, Rejection
+from pipelines import stopping
 from pipelines.build.bench import Bench
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
@@ -137,6 +138,8 @@ class Wire:
         return PhotoRef(self.root, name, ())
 
     def _write(self, _: str, rows: Iterable[dict[str, str]]) -> None:
+        if stopping.asked():  # some may lack
+            return
         ordered = sorted(rows, key=lambda row: row["name"])
         self.bench.store.write_table(HEARD, pa.Table.from_pylist(ordered, TOLD))
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions
 
-from pipelines import site
+from pipelines import site, stopping
 from pipelines.build import cluster, rows
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
@@ -71,6 +71,7 @@ def build(
         Lost: if a runner lost work, or what it made could not be kept.
         Busy: if another run is at work in the city folder.
         Unrun: if a cluster does not answer, or gives up.
+        Stopped: if somebody asked to end (`stopping`).
     """
     readied(options)
     ours = options.view_as(CityOptions)
@@ -129,6 +130,7 @@ def carried_out(
             result = launched(options, partial(wired, asked_for), store)
         check(store, asked_for.work.run, bench.versions)
         asked_for.settle()
+        stopping.check()  # from here on to its end: the run is noted, and shown
         done = stages(result)
         told = noted(done=done)
         again += sum(one.get("healed", 0) for one in done.values())
@@ -180,6 +182,8 @@ def tidied(store: Store, versions: Versions) -> None:
     """
     with contextlib.suppress(OSError):
         for stage in vars(versions):
+            if stopping.asked():
+                return
             pack(store, versions.folder(stage))
 
 

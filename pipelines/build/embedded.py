@@ -63,7 +63,7 @@ def in_process(options: PipelineOptions) -> bool:
 
 def command() -> str:
     """Write what a shell is to start as a worker."""
-    return f"{shlex.quote(sys.executable)} -m {WORKER}"
+    return f"exec {shlex.quote(sys.executable)} -m {WORKER}"  # no shell stays
 
 
 @contextlib.contextmanager

@@ -12,6 +12,7 @@ import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions, StandardOptions
 from apache_beam.runners.runner import PipelineResult
 
+from pipelines import stopping
 from pipelines.build import cluster, embedded
 from pipelines.build.report import Lost
 from pipelines.store import Store, Unstored
@@ -31,14 +32,30 @@ def launched(
     Raises:
         Lost: if what was made could not be kept.
         Unrun: if a cluster gave up.
+        Stopped: if somebody asked to end.
     """
+    stopping.check()
+    result = ran(options, wire, store)
+    stopping.check()  # what it was asked to make may lack
+    return result
+
+
+def ran(
+    options: PipelineOptions, wire: Callable[[beam.Pipeline], None], store: Store
+) -> PipelineResult:
+    """Run what `wire` adds to a pipeline, and raise as `launched` does."""
     runner = options.view_as(StandardOptions).runner
     if runner != embedded.EMBEDDED:
         with cluster.told(runner):
             pipeline = beam.Pipeline(options=options)
             wire(pipeline)
             result = pipeline.run()
-            result.wait_until_finish()
+            try:
+                with stopping.at_once():
+                    result.wait_until_finish()
+            except stopping.Stopped:
+                result.cancel()
+                raise
         return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)

@@ -16,6 +16,7 @@ import apache_beam as beam
 from apache_beam import pvalue
 
 from nostalgin_core.records import Rejection
+from pipelines import stopping
 from pipelines.build.corrected import Corrected
 from pipelines.index import asked
 from pipelines.index.asked import Asked, Piece
@@ -69,6 +70,8 @@ class Plan(beam.PTransform):
         return Planned(photos, blocks, sent.refused)
 
     def _sent(self, piece: Piece) -> Iterator[Any]:
+        if stopping.asked():
+            return
         for row in asked.rows(self.store, self.asked.run, piece):
             if isinstance(row, Rejection):
                 yield pvalue.TaggedOutput("refused", row)

@@ -10,7 +10,7 @@ from apache_beam import pvalue
 
 from nostalgin_core import model
 from nostalgin_core.records import Height, Rejection, Texture
-from pipelines import site
+from pipelines import site, stopping
 from pipelines.build.blocks import Modelled, Placed, texture_of
 from pipelines.build.stages import FacadeRef
 from pipelines.build.worn import Worn
@@ -213,6 +213,8 @@ class WriteTable(beam.PTransform):
             yield runs.part_of(self.name, row, self.parts), [row]
 
     def _write(self, part: int, told: Iterable[Rows]) -> str:
+        if stopping.asked():  # some may lack
+            return self.name
         rows = [row for one in told for row in one]
         which = (part, self.parts)
         runs.write_table(self.store, self.run, self.name, rows, which)

@@ -138,7 +138,8 @@ class Crew:
 
 def serve(worker: Connection) -> None:
     """Answer a worker until it is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the worker hears it, and goes
+    for one in (signal.SIGINT, signal.SIGTERM):  # the worker hears it, and goes
+        signal.signal(one, signal.SIG_IGN)
     crew = Crew(worker)
     try:
         while True:

@@ -2,9 +2,11 @@
 
 import sys
 
+from pipelines import stopping
 from pipelines.build.isolation import POOL
 
 if __name__ == "__main__":
+    stopping.left_to_the_driver()
     import pipelines.build.blocks  # noqa: F401 - what both will need, loaded once
 
     POOL.fill()

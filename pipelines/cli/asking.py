@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from pipelines.cli.launch import told
+from pipelines.cli.launch import ended, told
 from pipelines.console import Voice, errors, fail, hushed
+from pipelines.stopping import Stopped, heeded
 
 if TYPE_CHECKING:  # both are slow to load
     from pipelines.index import Ask, Heard
@@ -50,8 +51,10 @@ def asking(
         voice.say("boards", words, photos=len(names))
         plain = (Unlocked, build.Lost, build.Unrun)
         try:
-            with hushed(errors, plain=(*plain, OSError)):
+            with heeded(), hushed(errors, plain=(*plain, OSError, Stopped)):
                 return build.boards(options, root, names)
+        except Stopped as problem:
+            raise ended(str(problem)) from problem
         except plain as problem:
             raise fail(str(problem)) from problem
 

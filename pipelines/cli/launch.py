@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from pipelines import stopping
 from pipelines.console import Voice, Watch, errors, fail, hushed, summed, unwritable
+from pipelines.stopping import Stopped, heeded
 
 if TYPE_CHECKING:  # both are slow to load
     from apache_beam.options.pipeline_options import PipelineOptions
@@ -73,9 +75,17 @@ def failing(city: str) -> Iterator[None]:
     plain = (Unusable, Unlocked, Foreign, ViewerMissingError, build.Lost, build.Unrun)
     plain = (*plain, Busy, Damaged)
     try:
-        with hushed(errors, plain=(*plain, OSError)):
+        with heeded(), hushed(errors, plain=(*plain, OSError, Stopped)):
             yield
+    except Stopped as problem:
+        raise ended(str(problem)) from problem
     except plain as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
+
+
+def ended(why: str) -> typer.Exit:
+    """Say that a run was asked to end, and end with the code that tells it."""
+    fail(why)
+    return typer.Exit(stopping.CODE)

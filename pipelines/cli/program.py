@@ -19,6 +19,7 @@ from pipelines.cli import (
     reprocess,
     review,
     schedule,
+    status,
     view,
     workers,
 )
@@ -82,7 +83,7 @@ app.command("schedule", epilog=schedule.EXAMPLES, context_settings=TO_BEAM)(
     schedule.schedule_command
 )
 app.command("report", epilog=report.EXAMPLES)(report.report_command)
-app.command("status", epilog=report.STATUS_EXAMPLES)(report.status_command)
+app.command("status", epilog=status.EXAMPLES)(status.status_command)
 app.command("gc", epilog=gc.EXAMPLES)(gc.gc_command)
 app.command("workers", epilog=workers.EXAMPLES)(workers.workers_command)
 app.add_typer(commands.app, name="evaluate")

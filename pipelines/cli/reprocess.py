@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from pipelines import stopping
 from pipelines.cli.grown import indexed_again, indexed_dry
 from pipelines.cli.launch import (
     TOO_MANY_REJECTIONS,
@@ -74,7 +75,8 @@ def reprocess_command(
     if dry_run:
         tell(looked(city, voice, str(models or ""), **asked), voice)
         return
-    done = redone(city, voice, str(models or ""), context.args, **asked)
+    with stopping.heeded():
+        done = redone(city, voice, str(models or ""), context.args, **asked)
     if done.report is not None and done.report.held:
         raise typer.Exit(TOO_MANY_REJECTIONS)
 

@@ -1,6 +1,5 @@
 """`nostalgin schedule`: a city is reprocessed at set times."""
 
-import signal
 import threading
 from datetime import UTC, datetime
 from functools import partial
@@ -8,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
+from pipelines import stopping
 from pipelines.cli.launch import City, JsonLines, ModelsFolder
 from pipelines.cli.reprocess import redone
 from pipelines.console import Quiet, Voice, errors
@@ -29,7 +29,7 @@ class Wall:
     """The machine's clock, which a signal ends."""
 
     def __init__(self) -> None:
-        """Begin to listen for SIGTERM and SIGINT."""
+        """Begin to wait."""
         self._ended = threading.Event()
 
     def now(self) -> datetime:
@@ -44,7 +44,7 @@ class Wall:
         """Tell whether somebody asked to end."""
         return self._ended.is_set()
 
-    def end(self, *_: object) -> None:
+    def end(self) -> None:
         """Ask to end."""
         self._ended.set()
 
@@ -70,9 +70,8 @@ def schedule_command(
 ) -> None:
     """Reprocess a city at set times; what was missed is made up for once.
 
-    What came of each time is kept in CITY/schedule.json. After SIGTERM a run that is at
-    work comes to its end, and no other begins; one that is killed costs what was in
-    flight, and the next goes on where it was.
+    What came of each time is kept in CITY/schedule.json. After SIGTERM what is in
+    flight comes to its end and nothing else begins; the next goes on where it was.
     """
     from pipelines import schedule
     from pipelines.store import Store
@@ -87,12 +86,13 @@ def schedule_command(
         schedule.ticks_between(cron, zone, clock.now(), clock.now())
     except schedule.NoCron as problem:
         raise typer.BadParameter(str(problem)) from problem
-    if once:
-        schedule.run_due(timed, clock, work, None)
-        raise typer.Exit(max(outcomes, default=0))
-    signal.signal(signal.SIGTERM, clock.end)
-    signal.signal(signal.SIGINT, clock.end)
-    schedule.run_on(timed, clock, work)
+    with stopping.heeded(clock.end):
+        if once:
+            schedule.run_due(timed, clock, work, None)
+        else:
+            schedule.run_on(timed, clock, work)
+    if once or stopping.CODE in outcomes[-1:]:
+        raise typer.Exit(outcomes[-1] if outcomes else 0)
 
 
 def reprocessed(
@@ -105,9 +105,12 @@ def reprocessed(
         done = redone(*given, budget=budget)
     except typer.Exit as problem:
         outcomes.append(problem.exit_code)
-        words = f"exit code {problem.exit_code}"
-        return Record("", "", "", "failed", detail=words[:MOST_WORDS])
+        words = str(problem.__cause__ or f"exit code {problem.exit_code}")
+        stopped = problem.exit_code == stopping.CODE
+        outcome = "stopped" if stopped else "failed"
+        return Record("", "", "", outcome, detail=words[:MOST_WORDS])
     outcomes.append(0)
     outcome = "nothing" if done.report is None else "done"
     photos, later = done.plan.photos, done.plan.later
-    return Record("", "", "", outcome, photos=photos, later=later)
+    run = done.report.run if done.report is not None else ""
+    return Record("", "", "", outcome, photos=photos, later=later, run=run)

@@ -5,7 +5,7 @@ Open `figures` first.
 """
 
 from pipelines.report.figures import NoRun, figures
-from pipelines.report.history import history
+from pipelines.report.history import Past, history
 from pipelines.report.page import page
 
-__all__ = ["NoRun", "figures", "history", "page"]
+__all__ = ["NoRun", "Past", "figures", "history", "page"]

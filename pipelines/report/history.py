@@ -21,6 +21,8 @@ class Past:
     photos: int | None  # None: it was not published
     shown_share: float | None
     current: bool  # its city is the one that is shown
+    cpu_seconds: float | None = None  # that its stages spent
+    estimated_cpu_seconds: float | None = None  # as it was planned, if it was
 
     @property
     def state(self) -> str:
@@ -58,7 +60,14 @@ def past(store: Store, run: str, shown: str) -> Past:
         photos=None if published.get("photos") is None else int(published["photos"]),
         shown_share=number(published.get("shown_share")),
         current=run == shown,
+        cpu_seconds=number(told.get("cpu_seconds")),
+        estimated_cpu_seconds=estimated(told.get("estimated")),
     )
+
+
+def estimated(told: object) -> float | None:
+    """Read what a run was estimated to cost."""
+    return number(told.get("cpu_seconds")) if isinstance(told, dict) else None
 
 
 def read_json(store: Store, name: str) -> dict[str, Any]:

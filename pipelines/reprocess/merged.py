@@ -1,9 +1,10 @@
 """A run's tables, made of what was redone and of what the run before it tells.
 
-A part is held at a time. One in which nothing changed is written as it was read.
+Two parts are held at a time, and each part reads as many of the earlier tables as may
+hold rows of it: the work is linear in rows, also where the count of parts is another.
+A part in which nothing changed is written as it was read.
 """
 
-from collections.abc import Iterator
 from typing import Any, Final
 
 import numpy as np
@@ -31,15 +32,16 @@ def merge(store: Store, run: str, before: str, parts: int, redone: np.ndarray) -
     for name in SUBJECT:
         there = count(store, before, name)
         for part in range(parts):
+            which = (part, parts)
             same = parts == there
             old = (
-                [one(store, before, name, (part, parts))]
+                [one(store, before, name, which)]
                 if same
-                else whole(store, before, name, (part, parts))
+                else whole(store, before, name, which)
             )
             kept = [stays(table, name, redone) for table in old]
-            new = whole(store, f"{run}/{runs.REDONE}", name, (part, parts))
-            write(store, (run, name, (part, parts)), old, [*kept, *new])
+            new = whole(store, f"{run}/{runs.REDONE}", name, which)
+            write(store, (run, name, which), old, [*kept, *new])
 
 
 def complete(store: Store, run: str) -> bool:
@@ -62,22 +64,19 @@ def one(store: Store, run: str, name: str, which: runs.Part) -> pa.Table:
 
 
 def whole(store: Store, run: str, name: str, which: runs.Part) -> list[pa.Table]:
-    """Read of a table that has other parts the rows that fall into this one."""
-    if not count(store, run, name):
-        return []
-    return list(falling(runs.each_part(store, run, name), name, which))
+    """Read of a table that may have other parts the rows that fall into this one."""
+    there = count(store, run, name)
+    parts = ((each, there) for each in runs.sources(which, there))
+    return [falling(one(store, run, name, each), name, which) for each in parts]
 
 
-def falling(
-    tables: Iterator[pa.Table], name: str, which: runs.Part
-) -> Iterator[pa.Table]:
+def falling(table: pa.Table, name: str, which: runs.Part) -> pa.Table:
     """Take the rows that fall into a part."""
     part, parts = which
     first = runs.SCHEMAS[name].names[0]
-    for table in tables:
-        told = table.column(first).to_pylist()
-        mine = [runs.part_of(name, {first: cell}, parts) == part for cell in told]
-        yield table.filter(pa.array(mine, pa.bool_()))
+    told = table.column(first).to_pylist()
+    mine = [runs.part_of(name, {first: cell}, parts) == part for cell in told]
+    return table.filter(pa.array(mine, pa.bool_()))
 
 
 def stays(table: pa.Table, name: str, redone: np.ndarray) -> pa.Table:

@@ -18,9 +18,10 @@ from pipelines.models import Models
 from pipelines.reprocess import merged
 from pipelines.reprocess.now import now
 from pipelines.reprocess.plan import Plan, planned
+from pipelines.reprocess.rollback import SHOWN
 from pipelines.reprocess.stale import CAUSES
 from pipelines.store import Store, held, key_of, runs
-from pipelines.store.refuse import drop_run, record
+from pipelines.store.refuse import drop_run
 
 OF_FILES: Final = ("new", "changed", "removed")
 
@@ -136,10 +137,9 @@ def prepared(plan: Plan, ours: CityOptions, run: str = "") -> Prepared:
 
 
 def named(plan: Plan) -> str:
-    """Name the next run as a build would; if there is one of that name, by its own."""
+    """Name the next run as a build would; if one of that name was shown, by its own."""
     name = plan.now.run
-    there = record(plan.now.store, name)
-    if "seconds" not in there and not plan.later:
+    if not plan.now.store.exists(f"runs/{name}/{SHOWN}") and not plan.later:
         return name
     files = np.isin(plan.stale.causes, [CAUSES.index(one) for one in OF_FILES])
     told = (plan.stale.photos[files], plan.stale.since_ns[files], plan.redone)

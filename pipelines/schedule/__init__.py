@@ -6,14 +6,17 @@ Open `ticks` first, then `schedule`.
 
 from pipelines.schedule.record import Record, recorded
 from pipelines.schedule.schedule import Schedule, run_due, run_on
+from pipelines.schedule.state import State, state
 from pipelines.schedule.ticks import NoCron, ticks_between
 
 __all__ = [
     "NoCron",
     "Record",
     "Schedule",
+    "State",
     "recorded",
     "run_due",
     "run_on",
+    "state",
     "ticks_between",
 ]

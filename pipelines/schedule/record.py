@@ -4,8 +4,10 @@ CITY/schedule.json      the last times with how they ended, the newest last
 """
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
+from itertools import takewhile
 from typing import Final
 
 from pipelines.store import Store
@@ -21,16 +23,22 @@ class Record:
     tick: str  # UTC, as 2026-11-22T03:17:00+00:00
     began: str
     ended: str
-    outcome: str  # done, nothing, failed, stopped, busy
+    outcome: str  # done, nothing, failed, stopped
     missed: int = 0  # earlier times that this one made up for
     detail: str = ""  # of what failed
     photos: int = 0  # redone
     later: int = 0  # stale ones that the budget left
+    run: str = ""  # that was made
+    cron: str = ""  # by which it was due
+    zone: str = ""
 
     @property
     def when(self) -> datetime:
         """Give the time that it was due."""
         return datetime.fromisoformat(self.tick).astimezone(UTC)
+
+
+STOPPED: Final = "stopped"  # before it was done: it is due again
 
 
 def recorded(store: Store) -> list[Record]:
@@ -41,6 +49,12 @@ def recorded(store: Store) -> list[Record]:
         return [one for one in found if one.when]
     except (OSError, ValueError, TypeError):
         return []
+
+
+def stopped(records: Sequence[Record]) -> list[datetime]:
+    """List the times that were stopped since the last other one: they are due again."""
+    last = takewhile(lambda one: one.outcome == STOPPED, reversed(records))
+    return sorted({one.when for one in last})
 
 
 def record(store: Store, one: Record) -> None:

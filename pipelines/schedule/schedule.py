@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import Final, Protocol
 
-from pipelines.schedule.record import Record, record, recorded
+from pipelines.schedule.record import Record, record, recorded, stopped
 from pipelines.schedule.ticks import ticks_after, ticks_between
 from pipelines.store import Store
 
@@ -63,13 +63,15 @@ def run_due(
     last = before[-1].when if before else since
     now = clock.now()
     ticks = [now] if last is None else schedule.due(now, last)
+    ticks = [*stopped(before), *ticks]
     if not ticks:
         return False
     began = now.astimezone(UTC)
     made = work()
     told = {"tick": ticks[-1].isoformat(), "began": began.isoformat()}
     ended = clock.now().astimezone(UTC).isoformat()
-    done = replace(made, **told, ended=ended, missed=len(ticks) - 1)
+    told |= {"ended": ended, "cron": schedule.cron, "zone": schedule.zone}
+    done = replace(made, **told, missed=len(ticks) - 1)
     record(schedule.store, done)
     return True
 

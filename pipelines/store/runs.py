@@ -6,12 +6,13 @@
 The run's id is a hash of what was asked for, so a run that is repeated writes the same
 tables to the same place. Clock times are in run.json and the metrics.prom made of it
 alone. The table of a large archive is written in parts, as
-`photos-03-of-37.parquet`, none of which is more than one process holds; what is told of
+`photos-03-of-64.parquet`, none of which is more than one process holds; what is told of
 one photo or block stands in one part.
 """
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
@@ -137,8 +138,23 @@ def run_id(manifest_sha256: str, versions: Versions, shard: str) -> str:
 
 
 def parts_of(rows: int) -> int:
-    """Tell in how many parts the tables of a run over so many rows are written."""
-    return 1 + rows // PART
+    """Tell in how many parts the tables of a run over so many rows are written.
+
+    It is a power of two, so that a part follows from one part of a table that has half
+    as many, or twice (`sources`).
+    """
+    return 1 << (rows // PART).bit_length()
+
+
+def sources(which: Part, there: int) -> list[int]:
+    """List the parts of a table of so many that rows of this part may stand in.
+
+    A row stands in the part that is the remainder of one number, so that both parts
+    are alike by the greatest common divisor of both counts.
+    """
+    part, parts = which
+    common = math.gcd(parts, there)
+    return list(range(part % common, there, common)) if there else []
 
 
 def table_path(run: str, name: str, which: Part = (0, 1)) -> str:

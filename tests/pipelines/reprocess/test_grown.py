@@ -31,7 +31,7 @@ def wished(city: Path) -> Path:
 
 def run(city: Path, command: str, *words: str) -> Result:
     models = ["--models", str(city.parent / "models")]
-    beam = HERE if "--dry-run" not in words else ()
+    beam = HERE if command != "status" and "--dry-run" not in words else ()
     return CliRunner().invoke(app, [command, str(city), *models, *words, *beam])
 
 
@@ -123,3 +123,24 @@ def test_what_comes_from_the_web_is_not_asked_for_again(city: Path) -> None:
     wish = index.Wish.told(str(city.parent / "photos"), catalogue="https://a.example/l")
     assert not wish.lasting
     assert index.known(Store(str(city))) is None
+
+
+def test_the_status_tells_times_failures_and_what_is_stale(wished: Path) -> None:
+    record = {"began": "", "ended": "", "cron": "17 3 * * *", "zone": "UTC"}
+    times = [
+        {"tick": "2026-11-20T03:17:00+00:00", "outcome": "failed", "detail": "full"},
+        {"tick": "2026-11-21T03:17:00+00:00", "outcome": "done", "missed": 2},
+    ]
+    told = json.dumps([record | one for one in times])
+    (wished / "schedule.json").write_text(told)
+    grow(wished)
+    said = run(wished, "status").stdout
+    assert "last due 2026-11-21 03:17 UTC: done, made up for 2 missed" in said
+    assert "the first 2026-11-22 03:17 UTC" in said
+    assert "failed 2026-11-20 03:17 UTC: full" in said
+    assert "1 of 5 photographs are to be redone (1 new)" in said
+    assert "to be redone" not in run(wished, "status", "--brief").stdout
+    lines = run(wished, "status", "--json").stdout.splitlines()
+    schedule, stale = (json.loads(one) for one in lines[-2:])
+    assert schedule["schedule"]["failures"][0]["detail"] == "full"
+    assert stale["stale"]["causes"] == {"new": 1}

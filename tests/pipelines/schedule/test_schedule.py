@@ -84,6 +84,17 @@ def test_one_that_failed_is_recorded_and_the_next_goes_on(tmp_path: Path) -> Non
     assert [one.outcome for one in recorded(schedule.store)] == ["failed", "done"]
 
 
+def test_one_that_was_stopped_is_due_again_at_once(tmp_path: Path) -> None:
+    schedule, clock = scheduled(tmp_path), Painted(NOON, NOON)
+    run_due(schedule, clock, worked, None)
+    clock.time += DAY
+    for outcome, missed in (("stopped", 0), ("stopped", 1), ("done", 1)):
+        assert run_due(schedule, clock, lambda outcome=outcome: worked(outcome), None)
+        assert recorded(schedule.store)[-1].missed == missed
+        clock.time += DAY if missed == 0 else timedelta(minutes=1)
+    assert not run_due(schedule, clock, worked, None)
+
+
 def test_once_runs_at_first_and_then_only_when_it_is_due(tmp_path: Path) -> None:
     schedule = scheduled(tmp_path)
     clock = Painted(NOON, NOON)
