@@ -19,7 +19,6 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-STRIDE: Final = 4
 KINDS: Final = 3  # ground, front, what hides it
 WIDTH: Final = 64
 GROUPS: Final = 8

@@ -63,7 +63,13 @@ def cleaned(text: str) -> str:
 
 def spelt(key: Key) -> str:
     """Spell a key as a board does."""
-    return f"{key[0].upper()}-{key[1].upper()}{LETTER}"
+    return "-".join(halves(key))
+
+
+def halves(key: Key) -> tuple[str, str]:
+    """Spell a key's block and lot, either of which may have a dash in it."""
+    block, lot = key
+    return block.upper(), f"{lot.upper()}{LETTER}"
 
 
 def cost(text: str, key: Key) -> float:
@@ -71,7 +77,7 @@ def cost(text: str, key: Key) -> float:
 
     A reader may have missed one half of the board: the other tells nothing of it.
     """
-    block, lot = spelt(key).split("-")
+    block, lot = halves(key)
     return min(whole(text, key), HALF + min(apart(text, block), apart(text, f"-{lot}")))
 
 

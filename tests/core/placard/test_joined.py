@@ -140,3 +140,12 @@ def test_the_nearest_keys_are_those_that_a_search_of_all_finds() -> None:
         once = {wanted, *misread.slips(wanted)}
         by_hand = {key for key in keys if "".join(key) in once}
         assert by_hand <= found
+
+
+@pytest.mark.parametrize("key", [("12-A", "8"), ("1-2", "8"), ("993", "8-9")])
+def test_a_block_or_a_lot_may_have_a_dash_in_it(key: Key) -> None:
+    text = f"{key[0]} - {key[1]} M"
+    assert misread.cost(misread.cleaned(text.replace(" ", "")), key) == 0
+    found = joined(looks(text, text), known({key, *decoys(("993", "8"))}))
+    assert found.key in (key, None)
+    assert not found.sure or found.key == key
