@@ -43,7 +43,7 @@ def review_command(
     target = out or city / "review.html"
     try:
         found = review.review(Store(str(city)), blocks=block or (), most=most)
-    except Unusable as problem:
+    except (Unusable, review.Unkept) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise fail(f"{city}: {problem.strerror or problem}") from problem

@@ -5,6 +5,6 @@ Open `review` first.
 """
 
 from pipelines.review.page import page
-from pipelines.review.review import review
+from pipelines.review.review import Unkept, review
 
-__all__ = ["page", "review"]
+__all__ = ["Unkept", "page", "review"]

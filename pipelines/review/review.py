@@ -26,6 +26,13 @@ from pipelines.store.versions import Versions
 
 SHOWN_PX: Final = 900  # the longest side of a photograph on the page
 MOST_OF_A_KIND: Final = 50  # findings
+ASIDE: Final = (
+    "move it elsewhere to begin a new one: the page saves the old lines with the new"
+)
+
+
+class Unkept(ValueError):  # noqa: N818 - it reads as what it is about
+    """Corrections that a page's file would lose, with what to do about it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +73,9 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
 
     Raises:
         Unusable: if the manifest can't be read.
+        Unkept: if the page could not save the corrections that are given already.
     """
+    given = lines(store)
     by_row: dict[str, list[Finding]] = defaultdict(list)
     kinds: dict[str, list[Finding]] = defaultdict(list)
     for one in check.check(store, pictures=False):
@@ -98,7 +107,7 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
         counts={kind: len(some) for kind, some in kinds.items()},
         verdicts=Counter(one.verdict for one in read.values()),
         warned=told(store, made.rows),
-        given=lines(store),
+        given=given,
     )
 
 
@@ -173,9 +182,19 @@ def shown(root: str, name: str) -> tuple[str, tuple[int, int], str]:
 
 
 def lines(store: Store) -> str:
-    """Read the corrections that are given already, to which the page adds."""
+    """Read the corrections that are given already, to which the page adds.
+
+    Raises:
+        Unkept: if they are there, but not whole in what the page would save.
+    """
     try:
         text = store.read_bytes(LINES, CORRECTION_BYTES).decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError):
+    except FileNotFoundError:
         return ""
+    except OSError as problem:
+        why = f"{LINES}: {problem.strerror or problem}"
+        raise Unkept(f"{why}; {ASIDE}") from problem
+    except UnicodeDecodeError as problem:
+        why = f"{LINES}: byte {problem.start + 1:,} is not UTF-8"
+        raise Unkept(f"{why}; save it as UTF-8, or {ASIDE}") from problem
     return text if not text or text.endswith("\n") else f"{text}\n"

@@ -99,6 +99,26 @@ def test_a_folder_without_a_manifest_is_told(tmp_path: Path) -> None:
     assert "nostalgin index" in " ".join(result.output.split())
 
 
+@pytest.mark.parametrize(
+    ("data", "size", "told"),
+    [
+        (b'{"note": "caf\xe9"}\n', 0, "byte 14 is not UTF-8; save it as UTF-8"),
+        (b"{}\n", 50_000_001, "Larger than the 50,000,000 bytes that are read; move"),
+    ],
+)
+def test_no_page_is_written_that_would_lose_earlier_corrections(
+    data: bytes, size: int, told: str, other: Path
+) -> None:
+    given = other / "corrections.jsonl"
+    given.write_bytes(data)
+    with given.open("r+b") as file:
+        file.truncate(max(size, len(data)))
+    result = nostalgin("review", other)
+    assert result.exit_code == 1
+    assert f"corrections.jsonl: {told}" in " ".join(result.output.split())
+    assert not (other / "review.html").exists()
+
+
 def opened(browser: Any, city: Path) -> tuple[Any, list[str]]:
     """Open the page; gather all that goes wrong, and all that it asks a network for."""
     shown = browser.new_page(viewport={"width": 1000, "height": 900})
