@@ -7,6 +7,7 @@ Paper: section 3.5 takes this order as given. Open `catalogue` first, then `ring
 from nostalgin_core.catalogue.catalogue import (
     Catalogue,
     matched,
+    named_in,
     plain,
     read,
     unknown,
@@ -24,6 +25,7 @@ __all__ = [
     "fronts",
     "inside",
     "matched",
+    "named_in",
     "plain",
     "read",
     "stem",

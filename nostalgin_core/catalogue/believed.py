@@ -49,7 +49,8 @@ def believed(some: Sequence[Spot]) -> tuple[list[Spot], Doubts]:
             doubts.append((spot, why))
             if numbers and spot.street and not known.fits(street, numbers, index):
                 numbers = None
-        placed.append(replace(spot, street=street, numbers=numbers))
+        same = street == spot.street and numbers == spot.numbers
+        placed.append(spot if same else replace(spot, street=street, numbers=numbers))
     return _once(some, placed), doubts
 
 

@@ -11,8 +11,9 @@ that names it as a spreadsheet counts, header first. What a row's cells say is t
 import re
 import unicodedata
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import PurePosixPath
 from typing import Any, Final
 
@@ -84,7 +85,7 @@ class Catalogue:
 
 
 def read(
-    rows: Iterable[Mapping[str, str | None]],
+    rows: Sequence[Mapping[Any, Any]],
     *,
     name: str = "catalogue",
     first: int = FIRST_ROW,
@@ -94,16 +95,16 @@ def read(
 
     What stands beyond the last column is found under None or no name, as `csv` has it.
     """
-    given: list[Mapping[Any, Any]] = list(rows)
-    every = list(dict.fromkeys(key for row in given for key in row if key))
+    every = named_in(rows)
     columns = _columns(every)
     warnings = [
         f"{name}: column {_shown(column)} is not known; it is kept"
         for column in unknown(every)
     ]
     entries, rejections = [], []
-    for number, whole in enumerate(given, first):
-        row = {key: cell for key, cell in whole.items() if key}
+    for number, whole in enumerate(rows, first):
+        odd = None in whole or "" in whole
+        row = {key: cell for key, cell in whole.items() if key} if odd else whole
         cells = {field: _text(row.get(column)) for field, column in columns.items()}
         if cells.get("photo"):
             cells["photo"] = str(row[columns["photo"]])  # blanks may be of its name
@@ -122,6 +123,11 @@ def read(
         entries += [entry, *round_the_corner(entry, cells)]
         warnings += [f"{name} row {number}: {doubt}" for doubt in doubts]
     return Catalogue(tuple(entries), tuple(rejections), tuple(warnings))
+
+
+def named_in(rows: Iterable[Mapping[Any, Any]]) -> list[Any]:
+    """List the columns that have a name, in the order in which rows have them."""
+    return [one for one in dict.fromkeys(chain.from_iterable(rows)) if one]
 
 
 def unknown(columns: Iterable[str]) -> list[str]:
@@ -144,27 +150,23 @@ def matched(
     by the block and lot in its own name, if the catalogue has that lot; else it is
     rejected.
     """
-    by_path: dict[str, list[Entry]] = defaultdict(list)
-    by_name: dict[str, list[Entry]] = defaultdict(list)
-    by_lot: dict[tuple[str, str], list[Entry]] = defaultdict(list)
-    paths = {_path(photo) for photo in photos}
-    for entry in entries:
-        where = _path(entry.photo)
-        where = where if where in paths else _path(entry.photo.strip())
-        if where in paths:
-            by_path[where].append(entry)
-        if entry.photo and ("/" not in where or where not in paths):
-            by_name[_last(where)].append(entry)
-        by_lot[entry.block, entry.lot].append(entry)
+    paths = [_path(photo) for photo in photos]
+    by_path, by_name = _by_photo(entries, set(paths))
+    listed = [by_path.get(where) or by_name.get(_last(where)) or () for where in paths]
+    told = {p: named(p) for p, rows in zip(photos, listed, strict=True) if not rows}
+    by_lot: dict[tuple[str, str] | None, list[Entry]] = {
+        lot: [] for lot in told.values() if lot
+    }
+    for entry in entries if by_lot else ():
+        if (entry.block, entry.lot) in by_lot:
+            by_lot[entry.block, entry.lot].append(entry)
     found, rejections = {}, []
     known = {entry.block for entry in entries}
     blocks = sorted(known, key=lambda one: (len(one), one))
     shown = ", ".join(blocks[:NAMED]) + (" ..." if len(blocks) > NAMED else "")
-    for photo in photos:
-        lot = named(photo)
-        where = _path(photo)
-        rows = by_path.get(where) or by_name.get(_last(where))
-        rows = rows or (by_lot.get(lot) if lot else None)
+    for photo, own in zip(photos, listed, strict=True):
+        lot = told.get(photo)
+        rows = own or by_lot.get(lot)
         if rows:
             found[photo] = tuple(rows)
         elif lot and lot[0] not in known:
@@ -177,6 +179,24 @@ def matched(
                 Rejection(photo, "catalogue", "not in the catalogue", detail)
             )
     return found, tuple(rejections)
+
+
+def _by_photo(
+    entries: Iterable[Entry], paths: Collection[str]
+) -> tuple[Mapping[str, list[Entry]], Mapping[str, list[Entry]]]:
+    """Gather the entries that name a photo, by its path and by its name alone."""
+    by_path: dict[str, list[Entry]] = defaultdict(list)
+    by_name: dict[str, list[Entry]] = defaultdict(list)
+    for entry in entries:
+        if not entry.photo:
+            continue
+        where = _path(entry.photo)
+        where = where if where in paths else _path(entry.photo.strip())
+        if where in paths:
+            by_path[where].append(entry)
+        if "/" not in where or where not in paths:
+            by_name[_last(where)].append(entry)
+    return by_path, by_name
 
 
 def _columns(columns: Iterable[str]) -> dict[str, str]:

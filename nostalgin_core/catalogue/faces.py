@@ -66,14 +66,15 @@ class Faces:
 
     def against(self, street: str, numbers: Numbers, own: int) -> int:
         """Count up to two lots of a street that are far from numbers on it."""
+        if any(self.near(street, one, own) for one in (numbers, *flipped(numbers))):
+            return 0
         others = {
             self.lots[one[2]]
             for parity in (0, 1)
             for one in self.by_face.get((folded(street), parity), [])[:3]
             if self._other(one[2], own)
         }
-        near = [self.near(street, one, own) for one in (numbers, *flipped(numbers))]
-        return 0 if any(near) else min(len(others), WITNESSES)
+        return min(len(others), WITNESSES)
 
     def _other(self, index: int, own: int) -> bool:
         """Tell whether a spot is of another lot than the spot `own`."""

@@ -28,7 +28,7 @@ from nostalgin_core.catalogue.crowded import uncrowded
 from nostalgin_core.catalogue.cuts import lone, split
 from nostalgin_core.catalogue.directions import Law, directions
 from nostalgin_core.catalogue.entry import Entry, Named, from_file_name
-from nostalgin_core.catalogue.faces import Faces, faces
+from nostalgin_core.catalogue.faces import faces
 from nostalgin_core.catalogue.lengths import assumed_width
 from nostalgin_core.catalogue.sides import sides_of, unwrapped, with_empty_sides
 from nostalgin_core.catalogue.spots import Spot, folded, spots
@@ -43,7 +43,7 @@ class _Inferred:
     rings: list[list[Along | None]]  # None: a side without lots
     by_lot: bool  # lots and numbers agree, so that lots order
     first: float  # the key of the first lot
-    known: Faces
+    some: list[Spot]  # as they are listed
     doubts: list[tuple[Spot, str]]
 
     def ruled(self) -> list[str]:
@@ -63,7 +63,8 @@ class _Inferred:
         misfits = [
             one for side in sides for one in along.doubts(side, law, by_lot=self.by_lot)
         ]
-        return told([*self.doubts, *misfits], sides, self.known)
+        doubts = [*self.doubts, *misfits]
+        return told(doubts, sides, faces(self.some)) if doubts else []
 
     def begins(self, side: Along) -> bool:
         """Tell whether a block's lots begin on a side."""
@@ -143,7 +144,7 @@ def _inferred(some: list[Spot]) -> _Inferred:
     by_lot = along.trusted(every)
     doubts = [*moved, *crowded, *_alone(rings, sides), *_silent(some), *_far(placed)]
     first = min(one.key for one in some)
-    return _Inferred(stood, by_lot, first, faces(some), doubts)
+    return _Inferred(stood, by_lot, first, some, doubts)
 
 
 def _alone(

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Final
 
 from nostalgin_core.address import house_numbers
@@ -133,6 +134,7 @@ def numbers_of(address: str) -> tuple[float, float] | None:
     return float(numbers[0]) + half, float(numbers[1]) + half
 
 
+@lru_cache(maxsize=4096)
 def folded(street: str) -> str:
     """Write a street's name as it is compared."""
     return street.casefold().strip(" .")

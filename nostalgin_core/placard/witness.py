@@ -25,7 +25,7 @@ VERDICTS: Final[tuple[Verdict, ...]] = (
 ROW: Final = "add a row with the photograph's name, block and lot to the list"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Judged:
     """What the witnesses say together."""
 

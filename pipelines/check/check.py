@@ -9,12 +9,13 @@ from nostalgin_core.records import Rejection
 from pipelines import corrections
 from pipelines.check import copies, rows
 from pipelines.check.finding import Finding
-from pipelines.index import PROFILE, Nothing, manifest, of_city
+from pipelines.index import PROFILE, Nothing, manifest, of_city, seldom
 from pipelines.index.roots import located, rooted
 from pipelines.index.row import Row
 from pipelines.store import Store
 
 
+@seldom()
 def check(store: Store, *, pictures: bool = True) -> tuple[Finding, ...]:
     """Look over a city folder, and write nothing; `pictures` are looked at, or not.
 

@@ -17,6 +17,7 @@ from pipelines.index.anchors import Anchors, keep, load, told_of_places
 from pipelines.index.images import Nothing
 from pipelines.index.index import Indexed, index
 from pipelines.index.profiles import PROFILE, of_city
+from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned, of_folder
 from pipelines.index.witnesses import Ask, Heard
 
@@ -40,5 +41,6 @@ __all__ = [
     "of_folder",
     "outdated",
     "renewed",
+    "seldom",
     "told_of_places",
 ]

@@ -1,6 +1,6 @@
 """What stands in the manifest's rows: photo, front, and what a list tells of either."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from nostalgin_core.catalogue import Entry
@@ -17,16 +17,28 @@ def cells_of(
     *,
     root: str,
     credit: str,
-) -> list[dict[str, Any]]:
+) -> Iterator[dict[str, Any]]:
     """Write down pairs of photo and front, and all that a list tells of either."""
-    credits_of = {name: credit or first_credit(own) for name, own in shown.items()}
-    year = years(entries)
-    return [
-        manifest.row_of(photo, front, root=root, credit=credits_of.get(photo, credit))
-        | beside.of(photo, shown.get(photo, ()), front)
-        | year(front)
-        for photo, front in rows
-    ]
+    year, alone = years(entries), of_lots_alone(rows, entries)
+    for photo, front in rows:
+        own = shown.get(photo, ())
+        whose = credit or first_credit(own)
+        if not photo and front is not None:
+            own = alone[front.block, front.lot]
+        told = beside.of(photo, own) | year(front)
+        yield manifest.row_of(photo, front, root=root, credit=whose) | told
+
+
+def of_lots_alone(
+    rows: Sequence[tuple[str, Front | None]], entries: Sequence[Entry]
+) -> dict[tuple[str, str], tuple[Entry, ...]]:
+    """Find the first entry of each lot that has a front without a photograph."""
+    bare = (front for photo, front in rows if front is not None and not photo)
+    found = dict.fromkeys(((one.block, one.lot) for one in bare), tuple[Entry, ...]())
+    for entry in reversed(entries) if found else ():
+        if (entry.block, entry.lot) in found:
+            found[entry.block, entry.lot] = (entry,)
+    return found
 
 
 def years(entries: Sequence[Entry]) -> Callable[[Front | None], dict[str, str]]:

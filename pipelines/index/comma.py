@@ -13,6 +13,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
+from pipelines.index.held import Cells, Held, shared
+
 # What a spreadsheet takes for a formula, which may run a program, and the apostrophe
 # that makes text of it; numbers are none, whatever their sign.
 FORMULA: Final = re.compile(r"'*[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
@@ -22,14 +24,12 @@ MOST_LINE: Final = 20_000_000  # letters
 MOST_ROWS: Final = 5_000_000
 OTHERS: Final = re.compile(r"[;\t|]")  # what parts cells in other dialects
 
-Cells = dict[Any, Any]  # by column; what stands beyond the last one, under None
-
 
 class NoTable(ValueError):  # noqa: N818 - it reads as what it is about
     """Bytes that are no table, with the remedy."""
 
 
-def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], list[Cells]]:
+def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], Held]:
     """Read the names of the columns, and the rows below them.
 
     In a table of `ours` the apostrophes are taken off that `written` put before what a
@@ -43,25 +43,22 @@ def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], list[Cells]]:
     try:
         text = io.StringIO(data.decode("utf-8-sig"), newline="")
         with long_cells():
-            for row in csv.reader(short(text), strict=True):
+            for row in shared(csv.reader(short(text), strict=True)):
                 if len(table) > MOST_ROWS:
                     raise NoTable(f"has more than {MOST_ROWS:,} rows: part it")
-                table.append(row)
+                table.append([*map(bare, row)] if ours else row)
     except UnicodeDecodeError as problem:
         raise NoTable(f"is no UTF-8 ({problem}): save it as CSV in UTF-8") from problem
     except csv.Error as problem:
         where = f"row {len(table) + 1}: {problem}"
         raise NoTable(f"is no CSV ({where}): mend its quotes") from problem
-    if ours:
-        table = [[bare(cell) for cell in row] for row in table]
-    names, *below = table or [[]]
-    rows = [by_column(names, row) for row in below]
+    names = table.pop(0) if table else []
     if len(names) == 1 and (mark := OTHERS.search(names[0])):
         raise NoTable(f"parts its cells by {mark[0]!r}: save it with commas")
     twice = [name for name, count in Counter(names).items() if name and count > 1]
     if twice:
         raise NoTable(f"has two columns {twice[0]!r}: rename or delete one of them")
-    return names, rows
+    return names, Held(names, table)
 
 
 @contextlib.contextmanager
@@ -86,12 +83,6 @@ def short(lines: Iterable[str]) -> Iterator[str]:
         yield one
 
 
-def by_column(names: Sequence[str], row: Sequence[str]) -> Cells:
-    """Put a row's cells under their columns' names, and what is too much under None."""
-    cells: Cells = dict(zip(names, row, strict=False))
-    return cells | ({None: row[len(names) :]} if len(row) > len(names) else {})
-
-
 def blank(cells: Cells) -> bool:
     """Tell whether nothing is written in a row."""
     beyond = cells.get(None) or ()
@@ -101,21 +92,18 @@ def blank(cells: Cells) -> bool:
 
 def written(names: Sequence[str], rows: Iterable[Cells]) -> str:
     """Write a table that `parsed` reads back, whatever line breaks its cells hold."""
-    return "".join(lines(names, rows))
+    return lines([names, *([row.get(name) for name in names] for row in rows)])
 
 
-def lines(names: Sequence[str], rows: Iterable[Cells]) -> list[str]:
-    """Write the lines of a table.
+def lines(rows: Iterable[Iterable[Any]]) -> str:
+    """Write the lines of a table, each of some cells.
 
     The writer quotes the signs that end its lines and no others, so it is left its own
     two; a lone carriage return in a file's name would else break the table.
     """
     sink = Lines()
-    out = csv.writer(sink)
-    out.writerow(map(harmless, names))
-    for row in rows:
-        out.writerow([harmless(row.get(name)) for name in names])
-    return sink.written
+    csv.writer(sink).writerows(map(harmless, row) for row in rows)
+    return "".join(sink.written)
 
 
 class Lines:

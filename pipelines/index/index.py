@@ -16,6 +16,7 @@ from pipelines.index.columns import cells_of
 from pipelines.index.images import Nothing, images, spelt_out
 from pipelines.index.lots import Lots, from_list, from_names, lots_of
 from pipelines.index.profiles import PROFILE, USUAL, Profile, profile
+from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned
 from pipelines.index.told import Told, told
 from pipelines.index.witnesses import (
@@ -97,6 +98,7 @@ def index(
     return put(store, draft(photos, listed, city, **named, **asked), mended)
 
 
+@seldom()
 def draft(
     photos: str | Path,
     listed: str | Path | None,
@@ -123,17 +125,17 @@ def draft(
     names, unnamed = images(folder, city)
     root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
     heard, read = first_heard(given, names, Path(root), ask, own)
-    beside = told_by(given, read.entries)
+    beside, whole = told_by(given, read.entries), given is not None
+    del given  # its rows are held no longer
     lots = lots_of(read, blocks, Path(listed or photos), own)
     files, placeless = taken(places or Asked(), lots.blocks)
     shown, strangers = catalogue.matched(lots.entries, names, named=own.naming.told)
-    if given is not None:
+    if whole:
         heard = with_list(names, shown, lots.entries, ask, root, own=own)
         shown, strangers = placed(heard, shown, strangers, lots.entries)
     rows, homeless = paired(names, shown, lots.fronts, every=not blocks)
     cells = cells_of(rows, shown, beside, lots.entries, root=root, credit=credit)
-    columns = {column for row in cells for column in row} - {*manifest.SCHEMA.names}
-    encoded = manifest.encoded(cells, title=cleaned(title), kept=columns)
+    encoded = manifest.encoded(cells, title=cleaned(title), kept=None)
     unlisted = () if blocks else strangers
     wrong = (*unnamed, *read.rejections, *lots.crowded, *unlisted)
     doubts = (*lots.said, *beside.warnings, *lots.doubts, *placeless, *heard.doubts())
@@ -142,6 +144,7 @@ def draft(
     return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **told))
 
 
+@seldom()
 def put(store: Store, made: Draft, mended: tuple[str, bytes] | None) -> Indexed:
     """Write a manifest, what is told of places, and what each witness said.
 
@@ -244,7 +247,7 @@ def copied(store: Store, name: str, data: bytes) -> str:
 def told_by(listed: lists.Listing | None, entries: Sequence[Entry]) -> Told:
     """Gather what a list tells of photographs beside their place."""
     if listed is None:
-        return Told({}, {})
+        return Told({})
     reserved, beside = manifest.SCHEMA.names, listed.beside
     named = {"name": listed.name, "first": listed.first, "beside": beside}
     return told(listed.rows, entries, reserved=reserved, **named)

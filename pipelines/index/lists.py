@@ -175,11 +175,12 @@ def placed(listing: Listing, title: str, naming: Naming) -> Listing:
 
 def boroughs(listing: Listing) -> list[str]:
     """Warn of a list of several boroughs, which number their blocks alike."""
+    every = catalogue.named_in(listing.rows)
+    columns = [one for one in every if str(one).strip().casefold() == "borough"]
     named = {
-        str(cell).strip().casefold()
-        for row in listing.rows
-        for column, cell in row.items()
-        if column and str(column).strip().casefold() == "borough" and cell
+        str(row.get(column) or "").strip().casefold()
+        for row in (listing.rows if columns else ())
+        for column in columns
     } - {""}
     if len(named) < 2:
         return []

@@ -13,6 +13,7 @@ import json
 import time
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import islice
 from typing import Any, Final
 
@@ -76,13 +77,13 @@ def row_of(
 
 def write(
     store: Store,
-    rows: list[dict[str, Any]],
+    rows: Iterable[dict[str, Any]],
     *,
     title: str = "",
     mended: bool = False,
-    kept: Collection[str] = (),
+    kept: Collection[str] | None = (),
 ) -> None:
-    """Write the manifest in both forms."""
+    """Write the manifest in both forms, as `encoded` does."""
     put(store, encoded(rows, title=title, mended=mended, kept=kept))
 
 
@@ -93,52 +94,54 @@ def put(store: Store, both: tuple[bytes, bytes]) -> None:
 
 
 def encoded(
-    rows: list[dict[str, Any]],
+    rows: Iterable[dict[str, Any]],
     *,
     title: str = "",
     mended: bool = False,
-    kept: Collection[str] = (),
+    kept: Collection[str] | None = (),
 ) -> tuple[bytes, bytes]:
     """Encode the manifest as CSV and Parquet, by block, ring, rank and photo.
 
-    `kept` are columns of a list, which are remembered to be none of a slip's.
+    Rows may be made one at a time: none is held, for a million take a gigabyte as
+    Python has them. `kept` are columns of a list, which are remembered to be none of a
+    slip's; None: all that are not the manifest's own.
     """
-    columns = {name for row in rows for name in row}
-    told = {"title": title, "mended": mended, "kept": kept}
-    return ordered(sorted(rows, key=place), columns, **told)
-
-
-def ordered(
-    rows: Iterable[dict[str, Any]],
-    columns: Collection[str],
-    *,
-    title: str = "",
-    mended: bool = False,
-    kept: Collection[str] = (),
-) -> tuple[bytes, bytes]:
-    """Encode rows that come in their order, as CSV and Parquet, and hold none of them.
-
-    `columns` are those of all rows; a million rows take a gigabyte as Python has them.
-    """
-    known = SCHEMA.names
-    others = sorted(set(columns).difference(known))
-    names = [*known, *others]
-    extended = pa.schema([*SCHEMA, *(pa.field(name, pa.string()) for name in others)])
-    parts, batches = [comma.written(names, ())], []
-    waiting = iter(rows)
-    while group := list(islice(waiting, GROUP)):
-        parts.append("".join(comma.lines(names, group)[1:]))
-        batches.append(pa.RecordBatch.from_pylist(group, extended))
-    text = "".join(parts).encode()
-    table = pa.Table.from_batches(batches, extended).combine_chunks()
+    table, sink = ordered(rows), io.BytesIO()
+    sink.write(comma.lines([table.column_names]).encode())
+    for batch in table.to_batches(GROUP):
+        cells = (column.to_pylist() for column in batch)
+        sink.write(comma.lines(zip(*cells, strict=True)).encode())
+    text = sink.getvalue()
     mark = {CSV_HASH: hashlib.sha256(text).hexdigest().encode()}
     if title:
         mark[TITLE] = title.encode()
     if mended:
         mark[MENDED] = b"yes"
+    if kept is None:
+        kept = {*table.column_names} - {*SCHEMA.names}
     if kept:
         mark[KEPT] = json.dumps(sorted(kept)).encode()
     return text, tables.parquet_bytes(table.replace_schema_metadata(mark))
+
+
+def ordered(rows: Iterable[dict[str, Any]]) -> pa.Table:
+    """Put rows into a table, in their order; columns not known come last."""
+    table, keys = gathered(rows)
+    order = pa.array(sorted(range(len(keys)), key=keys.__getitem__), pa.int64())
+    del keys  # as large as the table
+    others = sorted({*table.column_names} - {*SCHEMA.names})
+    return table.select([*SCHEMA.names, *others]).take(order).combine_chunks()
+
+
+def gathered(rows: Iterable[dict[str, Any]]) -> tuple[pa.Table, list[tuple[Any, ...]]]:
+    """Put rows into a table as they come, and tell their places."""
+    keys, groups, waiting = [], [SCHEMA.empty_table()], iter(rows)
+    while group := list(islice(waiting, GROUP)):
+        keys += map(place, group)
+        others = sorted({name for row in group for name in row} - {*SCHEMA.names})
+        words = [pa.field(name, pa.string()) for name in others]
+        groups.append(pa.Table.from_pylist(group, pa.schema([*SCHEMA, *words])))
+    return pa.concat_tables(groups, promote_options="default"), keys
 
 
 def rewrite(store: Store, found: Manifest) -> Manifest:
@@ -207,6 +210,7 @@ def place(row: dict[str, Any]) -> tuple[Any, ...]:
     )
 
 
+@lru_cache(maxsize=1 << 16)
 def natural(text: str | None) -> tuple[int, str]:
     """Order numbers of up to nine digits by value, and all else after them."""
     if text and text.isdecimal() and len(text) <= DIGITS:

@@ -10,6 +10,7 @@ is empty. `docs/placards.md` describes the columns.
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Final, Self
 
 import pyarrow as pa
@@ -19,6 +20,7 @@ from pipelines.store import Store, tables
 
 TABLE: Final = "readings.parquet"
 FOLDER: Final = "readings"  # of the pictures
+GROUP: Final = 4096  # rows that are held as Python has them
 TEXT, NUMBER = pa.string(), pa.float64()
 COLUMNS: Final = (
     ("photo", TEXT),  # as in the manifest
@@ -41,7 +43,7 @@ SCHEMA: Final = pa.schema([pa.field(name, kind) for name, kind in COLUMNS])
 TO_MEND: Final[tuple[Verdict, ...]] = ("contradicted", "unsure", "silent")  # by people
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Reading:
     """What the three witnesses say of one photograph, and what follows."""
 
@@ -55,8 +57,7 @@ class Reading:
 
     def shown(self, crop: str) -> Self:
         """Name the picture of its board."""
-        words = f"{self.judged.remedy} ({crop})" if crop else self.judged.remedy
-        judged = replace(self.judged, remedy=words)
+        judged = replace(self.judged, remedy=f"{self.judged.remedy} ({crop})")
         return replace(self, crop=crop, judged=judged)
 
     @property
@@ -89,8 +90,12 @@ def spelled(key: Key | None) -> str:
 
 def write(store: Store, readings: Iterable[Reading]) -> None:
     """Write the table, in the order of the photographs' names."""
-    rows = [one.cells for one in sorted(readings, key=lambda one: one.photo)]
-    store.write_bytes(TABLE, tables.parquet_bytes(pa.Table.from_pylist(rows, SCHEMA)))
+    waiting = iter(sorted(readings, key=lambda one: one.photo))
+    batches = []
+    while group := [one.cells for one in islice(waiting, GROUP)]:
+        batches.append(pa.RecordBatch.from_pylist(group, SCHEMA))
+    table = pa.Table.from_batches(batches, SCHEMA).combine_chunks()
+    store.write_bytes(TABLE, tables.parquet_bytes(table))
 
 
 def counted(readings: Sequence[Reading]) -> dict[str, int]:

@@ -8,7 +8,7 @@ import contextlib
 import hashlib
 import io
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -57,7 +57,7 @@ class Source:
             return opened(self.data, self.where).schema_arrow.names
         return parsed_csv(self.data, f"{self.where}/{CSV}")[0]
 
-    def batches(self) -> Iterator[list[comma.Cells]]:
+    def batches(self) -> Iterator[Sequence[comma.Cells]]:
         """Read the rows' cells.
 
         Raises:
@@ -180,7 +180,7 @@ def no_parquet(where: str, problem: Exception) -> Unusable:
     )
 
 
-def parsed_csv(data: bytes, where: str) -> tuple[list[str], list[comma.Cells]]:
+def parsed_csv(data: bytes, where: str) -> tuple[list[str], Sequence[comma.Cells]]:
     """Parse the form that people mend."""
     try:
         return comma.parsed(data, ours=True)

@@ -8,11 +8,11 @@ are kept under their own names.
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any, Final
 
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Entry
-from nostalgin_core.records import Front
 from pipelines.index import dates
 
 TOLD: Final[Mapping[str, tuple[str, ...]]] = {
@@ -26,28 +26,24 @@ TELLING: Final = (*TOLD, AS_WRITTEN)  # columns that tell of photographs
 LONGEST_NAME: Final = 100  # letters of a column that is kept
 MOST_COLUMNS: Final = 200  # that are kept
 MOST_TOLD: Final = 5  # dates that are no EDTF
+MOST_SAME: Final = 4096  # rows that are remembered, for others may tell the same
 OURS: Final = "list_"  # before a column that the manifest has for itself
 
 
 @dataclass(frozen=True)
 class Told:
-    """What is told of each photograph and each lot, and what is doubtful about it."""
+    """What is told by each row, and what is doubtful about it."""
 
-    by_row: dict[int, dict[str, str]]
-    by_lot: dict[tuple[str, str], dict[str, str]]
+    by_row: Mapping[int, dict[str, str]]
     by_photo: dict[str, dict[str, str]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
-    def of(
-        self, photo: str, entries: Sequence[Entry], front: Front | None
-    ) -> dict[str, str]:
+    def of(self, photo: str, entries: Sequence[Entry]) -> dict[str, str]:
         """Give what is told of a photograph by its rows, the first that tells a thing.
 
-        Of a front without a photograph it is what is told of its lot.
+        Without a photograph it is what the rows tell.
         """
-        if not photo and front is not None:
-            return self.by_lot.get((front.block, front.lot), {})
-        found = self.by_photo.get(stem(photo), {})
+        found = self.by_photo.get(stem(photo), {}) if photo else {}
         for entry in reversed(entries):
             found = found | self.by_row.get(entry.row, {})
         return found
@@ -66,8 +62,7 @@ def told(
 
     `beside` are rows that tell of photographs by name, and of no place.
     """
-    every = (*rows, *beside)
-    columns = list(dict.fromkeys(key for row in every for key in row if key))
+    columns = catalogue.named_in(chain(rows, beside))
     plain = {catalogue.plain(column): column for column in columns}
     known = {
         field: next((plain[alias] for alias in aliases if alias in plain), None)
@@ -78,17 +73,20 @@ def told(
     kept = [one for one in unknown if len(one) <= LONGEST_NAME][:MOST_COLUMNS]
     names = {one: _own(one, {*reserved, *TOLD, AS_WRITTEN}) for one in kept}
     reader = Reader(names, known)
-    by_row = {entry.row: reader.read(rows[entry.row - first]) for entry in entries}
-    by_lot: dict[tuple[str, str], dict[str, str]] = {}
+    same: dict[tuple[tuple[str, str], ...], dict[str, str]] = {}  # as most rows tell
+    by_row = {}
     for entry in entries:
-        by_lot.setdefault((entry.block, entry.lot), by_row[entry.row])
+        if len(same) > MOST_SAME:
+            same.clear()
+        read = reader.read(rows[entry.row - first])
+        by_row[entry.row] = same.setdefault(tuple(read.items()), read)
     by_photo = {stem(text(row.get("photo"))): reader.read(row) for row in beside}
     warnings = reader.undated(name)
     if len(kept) < len(unknown):
         lost = len(unknown) - len(kept)
         limits = f"{MOST_COLUMNS} columns with names of {LONGEST_NAME} letters"
         warnings.append(f"{name}: {lost} columns are not kept: at most {limits} are")
-    return Told(by_row, by_lot, by_photo, tuple(warnings))
+    return Told(by_row, by_photo, tuple(warnings))
 
 
 @dataclass

@@ -67,8 +67,8 @@ def without_list(
     names: Sequence[str], ask: Ask | None, root: str, own: Profile
 ) -> Hearing:
     """Hear file names, and boards of any number."""
-    told = {name: key for name in names if (key := own.naming.guessed(name))}
-    return hear(names, told, {}, None, ask=ask, root=root, board=own.board)
+    told = own.naming.guessed
+    return hear(names, told, lambda _: (), None, ask=ask, root=root, board=own.board)
 
 
 def with_list(
@@ -81,16 +81,19 @@ def with_list(
     own: Profile,
 ) -> Hearing:
     """Hear file names, a list's rows, and boards of the lots that the list has."""
-    told = {name: key for name in names if (key := own.naming.told(name))}
-    keys = placard.known({(entry.block, entry.lot) for entry in entries})
-    listed = listed_keys(shown)
+    every = ((entry.block, entry.lot) for entry in entries if ask is not None)
+    keys, told = placard.known({*every}), own.naming.told
+
+    def listed(name: str) -> tuple[Key, ...]:
+        return listed_keys(name, shown.get(name, ()))
+
     return hear(names, told, listed, keys, ask=ask, root=root, board=own.board)
 
 
 def hear(
     names: Sequence[str],
-    named: Mapping[str, Key],
-    listed: Mapping[str, tuple[Key, ...]],
+    named: Callable[[str], Key | None],
+    listed: Callable[[str], tuple[Key, ...]],
     keys: Keys | None,
     *,
     ask: Ask | None,
@@ -101,7 +104,7 @@ def hear(
     wanted: list[str] = []
     if ask is not None and ask.which != "none":
         every = ask.which == "all"
-        wanted = [one for one in names if every or not (one in named or one in listed)]
+        wanted = [one for one in names if every or not (listed(one) or named(one))]
     boards = ask.boards(root, wanted) if ask is not None and wanted else {}
     readings = []
     for name in names:
@@ -110,7 +113,8 @@ def hear(
             heard = respelt(heard, board)
         if heard is not None and heard.looks:
             seen = placard.joined(heard.looks, keys)
-        own, rows = named.get(name), listed.get(name, ())
+        own, rows = named(name), listed(name)
+        own = rows[0] if rows and own == rows[0] else own  # which is held once
         judged = placard.judge(own, rows, seen, why=why_silent(heard))
         key = heard.key if heard else ""
         readings.append(Reading(name, judged, own, rows, seen, key))
@@ -143,20 +147,14 @@ def pictured(store: Store, hearing: Hearing) -> list[Reading]:
             if data:
                 crop = f"{FOLDER}/{one.key}.png"
                 store.write_bytes(crop, data)
-        done.append(one.shown(crop))
+        done.append(one.shown(crop) if crop else one)
     return done
 
 
-def listed_keys(
-    shown: Mapping[str, Sequence[Entry]],
-) -> dict[str, tuple[Key, ...]]:
+def listed_keys(photo: str, rows: Sequence[Entry]) -> tuple[Key, ...]:
     """Tell which keys the rows say that name a photograph; its name leads to others."""
-    found = {}
-    for photo, rows in shown.items():
-        own = [one for one in rows if one.photo and stem(one.photo) == stem(photo)]
-        if own:
-            found[photo] = tuple(dict.fromkeys((one.block, one.lot) for one in own))
-    return found
+    own = [one for one in rows if one.photo and stem(one.photo) == stem(photo)]
+    return tuple(dict.fromkeys((one.block, one.lot) for one in own))
 
 
 def placed(

@@ -1,5 +1,10 @@
+import io
+import json
 import re
+import weakref
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -9,6 +14,7 @@ from nostalgin_core.catalogue.entry import inside
 from nostalgin_core.records import Front
 from pipelines.index import cells, comma, manifest
 from pipelines.index.manifest import Unusable
+from pipelines.index.source import KEPT
 from pipelines.store.store import Store
 from tests.data import ROOT
 
@@ -268,6 +274,41 @@ def test_blocks_stand_in_the_order_of_their_numbers() -> None:
         None,
         "b",
     ]
+
+
+class Counted(dict[str, Any]):
+    """A row of which it can be told whether it is still held."""
+
+    __hash__ = object.__hash__
+
+
+def test_rows_that_are_made_one_at_a_time_are_not_held() -> None:
+    alive: weakref.WeakSet[Counted] = weakref.WeakSet()
+    most = 0
+
+    def made() -> Iterator[Counted]:
+        nonlocal most
+        for number in reversed(range(4 * manifest.GROUP)):
+            row = Counted(rows()[0] | {"photo": f"{number}.jpg", "rank": number})
+            alive.add(row)
+            most = max(most, len(alive))
+            yield row
+
+    _, parquet = manifest.encoded(made())
+    ranks = pq.read_table(io.BytesIO(parquet), columns=["rank"])["rank"].to_pylist()
+    assert ranks == list(range(4 * manifest.GROUP))
+    assert most <= 2 * manifest.GROUP  # the last group, and the one that is made
+
+
+def test_columns_of_some_rows_are_columns_of_all() -> None:
+    some = [rows()[0] | {"z": "1"}, rows()[1] | {"a": "2"}, rows()[2]]
+    text, parquet = manifest.encoded(iter(some), kept=None)
+    table = pq.read_table(io.BytesIO(parquet))
+    assert table.column_names == [*manifest.SCHEMA.names, "a", "z"]
+    assert sorted(map(str, table["z"].to_pylist())) == ["1", "None", "None"]
+    assert text.decode().splitlines()[0].endswith(",a,z")
+    marks = pq.read_schema(io.BytesIO(parquet)).metadata
+    assert json.loads(marks[KEPT]) == ["a", "z"]
 
 
 def test_every_column_is_documented() -> None:
