@@ -13,11 +13,11 @@ from typing import Final
 
 import numpy as np
 from jaxtyping import Float
+from scipy.sparse import csr_array
 
 from nostalgin_core.views.places import Ring
 from nostalgin_core.views.stretch import Stretch
 
-FARTHEST: Final = 24  # places between two facades of a photograph
 CORNER_DEG: Final = (45.0, 135.0)  # so much further, a facade stands round a corner
 STRAIGHT_DEG: Final = 20.0
 STRANGE: Final = 0.003  # of facades whose directions do not say where they stand
@@ -33,7 +33,7 @@ NEAR: Final = 2.0  # places from the filed lot at which a photograph begins
 ASTRAY: Final = 0.05  # photographs that are filed under a lot far off
 
 Numbers = Float[np.ndarray, " places"]
-Links = Float[np.ndarray, "places places"]
+Links = Float[np.ndarray, "places steps"]
 Belief = Float[np.ndarray, "facades places"]
 
 
@@ -86,32 +86,35 @@ def beginning(ring: Ring, filed: Collection[str]) -> Numbers:
     own = [i for i, place in enumerate(ring.places) if place.front.lot in filed]
     if not own:
         return np.full(n, 1 / n)
-    steps = ring.steps[:, own]
-    apart = np.minimum(steps, n - steps).min(axis=1)
+    round_it = np.array([own[-1] - n, *own, own[0] + n])
+    at = np.searchsorted(round_it, np.arange(n))
+    apart = np.minimum(round_it[at] - np.arange(n), np.arange(n) - round_it[at - 1])
     near = np.exp(-apart / NEAR)
     return (1 - ASTRAY) * near / near.sum() + ASTRAY / n
 
 
-def linked(ring: Ring, a: Stretch, b: Stretch) -> Links:
-    """Weigh pairs of places for a facade and the next one to its right."""
+def linked(ring: Ring, a: Stretch, b: Stretch) -> csr_array:
+    """Weigh places (rows) for a facade with those (columns) for one to its right."""
     turned = (b.heading_deg - a.heading_deg + 180) % 360 - 180
     straight, round_it = (
         abs(turned) < STRAIGHT_DEG,
         CORNER_DEG[0] < turned < CORNER_DEG[1],
     )
-    links = np.full(ring.steps.shape, STRANGE)
+    links = np.full(ring.on.shape, STRANGE)
     if round_it:
         links = np.where(ring.corners == 1, 1.0, links)
     if straight:
         links = np.where(ring.corners == 0, spaced(ring, a, b), links)
     links = links * proportioned(ring, a, b)
-    return np.where((ring.steps > 0) & (ring.steps <= FARTHEST), links, 0.0)
+    n, most = links.shape
+    starts = np.arange(n + 1) * most
+    return csr_array((links.ravel(), ring.on.ravel(), starts), shape=(n, n))
 
 
 def spaced(ring: Ring, a: Stretch, b: Stretch) -> Links:
     """Weigh pairs of places in one plane by the gap between two facades."""
     gap = 2 * (b.left - a.right) / (a.width + b.width)
-    usual_m = (ring.width_m[:, None] + ring.width_m[None]) / 2
+    usual_m = (ring.width_m[:, None] + ring.width_m[ring.on]) / 2
     listed = ring.between_m / usual_m
     near = normal(gap, listed, np.hypot(GAP_SD, ASSUMED_SD * listed))
     more = normal(gap, listed + OTHER[0], np.hypot(OTHER[1], ASSUMED_SD * listed))
@@ -123,8 +126,8 @@ def proportioned(ring: Ring, a: Stretch, b: Stretch) -> Links:
     """Weigh pairs of places by how wide two facades are to each other."""
     sd = np.where(ring.assumed, ASSUMED_SD, LISTED_SD)
     logs = np.log(ring.width_m)
-    spread = np.sqrt(SEEN_SD**2 + sd[:, None] ** 2 + sd[None] ** 2)
-    near = normal(np.log(a.width / b.width), logs[:, None] - logs[None], spread)
+    spread = np.sqrt(SEEN_SD**2 + sd[:, None] ** 2 + sd[ring.on] ** 2)
+    near = normal(np.log(a.width / b.width), logs[:, None] - logs[ring.on], spread)
     return (1 - WRONG) * near + WRONG / WIDEST
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, Int32
 
 from nostalgin_core.address import house_numbers
 from nostalgin_core.records import Front
@@ -20,7 +20,7 @@ AT_CORNER: Final = 0.5  # the other front of a lot at a corner: one of two has i
 MISSING: Final = 0.6  # a lot that no list has, where numbers jump
 NEXT_DOOR: Final = 2  # from one house number to the next on one side of a street
 SOMETIMES: Final = 0.05  # so is one where they do not, or where they are not told
-
+FARTHEST: Final = 24  # places between two facades of a photograph
 
 Kind = Literal["listed", "corner", "missing"]
 
@@ -36,13 +36,16 @@ class Place:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ring:
-    """Places, and what lies between any two: from the row's on to the column's."""
+    """Places, and what lies between each and those that follow it along the ring.
+
+    A column is a step further on, up to `FARTHEST` (k) of them and never all round.
+    """
 
     places: tuple[Place, ...]
-    steps: Int[np.ndarray, "n n"]  # forward along the ring
-    corners: Int[np.ndarray, "n n"]  # passed on the way
-    between_m: Float[np.ndarray, "n n"]  # of fronts that surely stand
-    absent: Float[np.ndarray, "n n"]  # probability that nothing else stands between
+    on: Int32[np.ndarray, "n k"]  # the place that lies so many steps further on
+    corners: Int[np.ndarray, "n k"]  # passed on the way
+    between_m: Float[np.ndarray, "n k"]  # of fronts that surely stand
+    absent: Float[np.ndarray, "n k"]  # probability that nothing else stands between
     width_m: Float[np.ndarray, " n"]
     assumed: Bool[np.ndarray, " n"]  # widths that no list tells
 
@@ -97,7 +100,7 @@ def jump(before: Front, front: Front) -> float:
 
 
 def ringed(ring: Sequence[Front]) -> Ring:
-    """Measure what lies between any two places of a ring."""
+    """Measure what lies between each place of a ring and those that follow it."""
     found = places(ring)
     n = len(found)
     width_m = np.array([one.front.width_m for one in found])
@@ -106,13 +109,14 @@ def ringed(ring: Sequence[Front]) -> Ring:
     sure_m = np.where(listed, width_m, 0.0)
     spare = np.where(listed, 0.0, [np.log1p(-one.present) for one in found])
     turns = (sides != np.roll(sides, 1)).astype(int)  # on the way to this place
-    after = [np.roll(np.arange(n), -start)[1:] for start in range(n)]
-    steps = (np.arange(n)[None] - np.arange(n)[:, None]) % n
-    corners = np.zeros((n, n), int)
-    between_m, absent = np.zeros((n, n)), np.ones((n, n))
-    for start, others in enumerate(after):
-        corners[start, others] = np.cumsum(turns[others])
-        between_m[start, others] = np.cumsum(sure_m[others]) - sure_m[others]
-        absent[start, others] = np.exp(np.cumsum(spare[others]) - spare[others])
-    assumed = np.array([one.front.width_assumed for one in found])
-    return Ring(found, steps, corners, between_m, absent, width_m, assumed)
+    further = np.arange(1, min(FARTHEST, n - 1) + 1)
+    on = ((np.arange(n)[:, None] + further) % n).astype(np.int32)
+    return Ring(
+        places=found,
+        on=on,
+        corners=np.cumsum(turns[on], axis=1),
+        between_m=np.cumsum(sure_m[on], axis=1) - sure_m[on],
+        absent=np.exp(np.cumsum(spare[on], axis=1) - spare[on]),
+        width_m=width_m,
+        assumed=np.array([one.front.width_assumed for one in found]),
+    )
