@@ -144,6 +144,8 @@ def _read(data: bytes) -> Shown:
     shells = [
         Shell(one["name"], tuple(_surfaces(document, binary, one["primitives"][0])))
         for one in document["meshes"]
+        if "_FEATURE_ID_0"
+        in one["primitives"][0]["attributes"]  # no building's: ground
     ]
     colours, codes = (
         Image.open(io.BytesIO(_view(document, binary, one["bufferView"])))

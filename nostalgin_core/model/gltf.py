@@ -4,7 +4,8 @@ Encoded images pass through untouched. Every building is a node under the block'
 its vertices carry its row of a property table (EXT_mesh_features,
 EXT_structural_metadata), so that a click tells the building. Two material variants show
 the photograph and the evidence. Materials are unlit, for the light is in the
-photographs, and masked, for blending can't be sorted inside a block.
+photographs, and masked, for blending can't be sorted inside a block. The ground of the
+yards hangs on the block's node itself, and is no building's.
 
 The axes are glTF's: (x, y, z) = (east, up, -north), in metres.
 """
@@ -32,6 +33,7 @@ Column = Sequence[str] | np.ndarray
 NEAREST, LINEAR, LINEAR_MIPMAP_LINEAR, CLAMP_TO_EDGE = 9728, 9729, 9987, 33071
 COMPONENTS = {"float32": "FLOAT32", "int32": "INT32", "uint8": "UINT8"}
 VARIANTS = ("photograph", "evidence")
+GROUND = "-ground"  # after a block's name: its yards
 
 
 def glb(
@@ -41,6 +43,7 @@ def glb(
     colours: Picture,
     evidence: Picture,
     table: Mapping[str, Column],
+    ground: Mesh | None = None,
     copyright: str = "",  # noqa: A002 - glTF's word
     extras: Mapping[str, Any] | None = None,
 ) -> bytes:
@@ -56,6 +59,8 @@ def glb(
     _check(table, len(buildings))
     buffer = Buffer()
     meshes = [_mesh(buffer, node, mesh, len(buildings)) for node, mesh in buildings]
+    if ground is not None:
+        meshes.append(_mesh(buffer, f"{name}{GROUND}", ground, None))
     looks = _looks(buffer, colours, evidence)
     webp = colours.mime == "image/webp"
     extensions = {
@@ -70,7 +75,9 @@ def glb(
         "extensions": extensions,
         "scene": 0,
         "scenes": [{"name": name, "nodes": [0]}],
-        "nodes": _nodes(name, [node for node, _ in buildings]),
+        "nodes": _nodes(
+            name, [node for node, _ in buildings], grounded=ground is not None
+        ),
         "meshes": meshes,
         **looks,
         "accessors": buffer.accessors,
@@ -100,27 +107,40 @@ def _asset(rights: str, extras: Mapping[str, Any]) -> Json:
     return asset
 
 
-def _nodes(block: str, names: Sequence[str]) -> list[Json]:
+def _nodes(block: str, names: Sequence[str], *, grounded: bool) -> list[Json]:
     leaves = [{"name": name, "mesh": index} for index, name in enumerate(names)]
-    root: Json = {"name": block}
+    root: Json = {"name": block, **({"mesh": len(names)} if grounded else {})}
     if leaves:
         root["children"] = list(range(1, len(leaves) + 1))
     return [root, *leaves]
 
 
-def _mesh(buffer: Buffer, name: str, mesh: Mesh, buildings: int) -> Json:
+def _mesh(buffer: Buffer, name: str, mesh: Mesh, buildings: int | None) -> Json:
+    """Write a mesh; one of no building (None) carries no building's number."""
     east, north, up = mesh.positions_m.T
     across, along, rise = mesh.normals.T
     index_dtype = np.uint16 if len(mesh.positions_m) < 65535 else np.uint32
+    attributes = {
+        "POSITION": vertices(
+            buffer, np.column_stack([east, up, -north]), "VEC3", bounds=True
+        ),
+        "NORMAL": vertices(buffer, np.column_stack([across, rise, -along]), "VEC3"),
+        "TEXCOORD_0": vertices(buffer, mesh.uvs, "VEC2"),
+    }
+    extensions: Json = {
+        "KHR_materials_variants": {
+            "mappings": [
+                {"material": index, "variants": [index]}
+                for index in range(len(VARIANTS))
+            ]
+        }
+    }
+    if buildings is not None:
+        attributes["_FEATURE_ID_0"] = vertices(buffer, mesh.features, "SCALAR")
+        numbered = {"featureCount": buildings, "attribute": 0, "propertyTable": 0}
+        extensions["EXT_mesh_features"] = {"featureIds": [numbered]}
     primitive = {
-        "attributes": {
-            "POSITION": vertices(
-                buffer, np.column_stack([east, up, -north]), "VEC3", bounds=True
-            ),
-            "NORMAL": vertices(buffer, np.column_stack([across, rise, -along]), "VEC3"),
-            "TEXCOORD_0": vertices(buffer, mesh.uvs, "VEC2"),
-            "_FEATURE_ID_0": vertices(buffer, mesh.features, "SCALAR"),
-        },
+        "attributes": attributes,
         "indices": accessor(
             buffer,
             mesh.triangles.ravel().astype(index_dtype),
@@ -129,19 +149,7 @@ def _mesh(buffer: Buffer, name: str, mesh: Mesh, buildings: int) -> Json:
         ),
         "material": 0,
         "mode": 4,
-        "extensions": {
-            "EXT_mesh_features": {
-                "featureIds": [
-                    {"featureCount": buildings, "attribute": 0, "propertyTable": 0}
-                ]
-            },
-            "KHR_materials_variants": {
-                "mappings": [
-                    {"material": index, "variants": [index]}
-                    for index in range(len(VARIANTS))
-                ]
-            },
-        },
+        "extensions": extensions,
     }
     return {"name": name, "primitives": [primitive]}
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from nostalgin_core.block import Settled
-from nostalgin_core.model import atlas, coarse, facts, gltf, mesh, picture
+from nostalgin_core.model import atlas, coarse, facts, gltf, mesh, picture, yards
 from nostalgin_core.model.atlas import Atlas
 from nostalgin_core.model.picture import ImageFormat
 from nostalgin_core.model.rights import Rights
@@ -70,6 +70,7 @@ class _Writer:
         return gltf.glb(
             one.block,
             meshes,
+            ground=yards.yards(one, pages),
             colours=picture.colours(pages, image_format=self.image_format),
             evidence=picture.evidence_key(pages),
             table={

@@ -27,6 +27,7 @@ from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
 from nostalgin_core.segment.posture import doubted, excess, sure, undone
 from nostalgin_core.segment.punch import healed, punches
+from nostalgin_core.segment.sky import without_sky
 from nostalgin_core.segment.walls import without_walls
 
 STRIDE_PX = 32
@@ -156,8 +157,9 @@ def trusted(
 
     A tax photo has one number board, so of the placards only the surest is kept. What
     is painted on fronts is dropped (`hiding`), pixels mend the masks of the rest, and
-    fronts that prove to be bare walls go (`walls`); punched holes and flares on fronts
-    are added, for the network was taught few or none.
+    fronts that prove to be bare walls go (`walls`), and so does sky on the others
+    (`sky`); punched holes and flares on fronts are added, for the network was taught
+    few or none.
     """
     least = {"facade": facade_score}
     board = max((f.score for f in found.things if f.category == "placard"), default=0.0)
@@ -178,7 +180,7 @@ def trusted(
                 "what looks like fronts shows neither windows nor cornices: mask it by "
                 "hand if there is one",
             )
-        return punches(photo) + flares(photo, kept) + judged
+        return punches(photo) + flares(photo, kept) + without_sky(photo, judged)
     return Rejection(
         photo.key,
         "segment",

@@ -39,12 +39,12 @@ from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 7,
+    "segment": 8,
     "matte": 7,
     "rectify": 8,
     "compare": 1,
     "inpaint": 6,
-    "block": 6,
+    "block": 7,
     "thumbnail": 2,
     "borrow": 1,
     "placard": 1,

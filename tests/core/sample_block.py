@@ -8,7 +8,7 @@ import numpy as np
 
 from nostalgin_core import city, evidence
 from nostalgin_core.block import Settled, raised
-from nostalgin_core.model import atlas, facts, gltf, mesh, picture
+from nostalgin_core.model import atlas, facts, gltf, mesh, picture, yards
 from nostalgin_core.records import (
     Assignment,
     Block,
@@ -210,6 +210,7 @@ def rebuilt(name: str) -> tuple[Block, bytes]:
         colours=picture.colours(page),
         evidence=picture.evidence_key(page),
         table=known(name),
+        ground=yards.yards(made, page),
         copyright="painted",
         extras={"evidence": picture.legend(), "block": name},
     )

@@ -150,6 +150,6 @@ class Visit:
         return self.ask("nostalgin.pose")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def visit(browser: Any, address: str) -> Visit:
     return Visit(browser, address).arrive()

@@ -41,6 +41,13 @@ def test_every_block_arrives_and_nothing_complains(visit: Visit) -> None:
     assert missing == []
 
 
+def test_a_block_is_one_mesh_and_the_viewer_paves_its_yards(visit: Visit) -> None:
+    meshes = visit.ask("""(() => { let count = 0;
+        nostalgin.page.city.tiles.group.traverse(one => { count += one.isMesh ? 1 : 0; });
+        return count; })()""")
+    assert meshes == visit.ask("nostalgin.stats.walls") == 2
+
+
 def test_nothing_is_asked_of_another_host(visit: Visit, address: str) -> None:
     elsewhere = [
         url for url in visit.requests if not url.startswith((address, "blob:", "data:"))

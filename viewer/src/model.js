@@ -9,6 +9,7 @@ const SAMPLE_PX = 1024; // a survey reads the evidence atlas at no more than thi
 
 /**
  * Replaces all meshes of a loaded model by one, and returns it; null where there is none.
+ * The ground of yards is let go: the viewer paves its own.
  *
  * Its `userData` holds `ids` (building id by feature number) and `evidence` (the texture);
  * each vertex says as `assumed` whether its whole building is.
@@ -30,7 +31,9 @@ export function united(scene, assumed) {
   const mesh = new Mesh(mergeGeometries(geometries), first.material);
   const { evidence } = first.userData;
   mesh.userData = { ids, evidence };
-  for (const part of parts) part.removeFromParent();
+  const rest = [];
+  scene.traverse((one) => one.isMesh && rest.push(one));
+  for (const one of rest) one.removeFromParent();
   scene.add(mesh);
   return mesh;
 }

@@ -102,4 +102,8 @@ def site_record(city: Path) -> Json:
 def glb(city: Path, block: str) -> trimesh.Scene:
     (one,) = (o for o in site_record(city)["blocks"] if o["name"] == block)
     data = (city / "site" / one["uri"]).read_bytes()
-    return trimesh.load(io.BytesIO(data), file_type="glb")
+    scene = trimesh.load(io.BytesIO(data), file_type="glb")
+    scene.delete_geometry(
+        [name for name in scene.geometry if name == f"{block}-ground"]
+    )
+    return scene
