@@ -10,6 +10,7 @@ photo,front_id,building_id,what,value,note
 993_8.jpg,,,quad,"80,20 400,32 402,610 78,600",its four corners
 """
 
+import codecs
 import hashlib
 import json
 from collections.abc import Callable
@@ -174,12 +175,13 @@ def read(store: Store) -> Corrections:
             rejections.append(Rejection(name, "corrections", "unreadable file", why))
             continue
         digest.update(name.encode() + b"\0" + data)
-        for number, cells in rows:
+        for number, row in rows:
             key = f"{name} row {number}"
             try:
+                cells = of_line(row) if isinstance(row, bytes) else row
                 one = Correction.model_validate(cells | {"row": key})
                 given[meaning(one.what), one.subject] = one
-            except ValidationError as problem:
+            except ValueError as problem:
                 told = reason(problem)
                 bad = Rejection(key, "corrections", "nonsense correction", told)
                 rejections.append(bad)
@@ -206,27 +208,39 @@ def table(data: bytes) -> list[tuple[int, dict[str, Any]]]:
     ]
 
 
-def lines(data: bytes) -> list[tuple[int, dict[str, Any]]]:
-    """List the objects of a text with one a line.
+def lines(data: bytes) -> list[tuple[int, bytes]]:
+    """List the lines of a text that say something; a newline alone ends one.
+
+    A note may hold any other letter that ends lines somewhere.
+    """
+    every = data.removeprefix(codecs.BOM_UTF8).split(b"\n")
+    return [(number, line) for number, line in enumerate(every, 1) if line.strip()]
+
+
+def of_line(line: bytes) -> dict[str, Any]:
+    """Read the object that a line is.
 
     Raises:
-        ValueError: if a line is none.
+        ValueError: if it is none; it says how to mend it.
     """
-    found = []
-    for number, line in enumerate(data.decode("utf-8-sig").splitlines(), 1):
-        if line.strip():
-            try:
-                one = json.loads(line)
-            except RecursionError as problem:
-                raise ValueError(f"line {number} is nested too deep") from problem
-            if not isinstance(one, dict):
-                raise ValueError(f"line {number} is no object")
-            found.append((number, one))
-    return found
+    try:
+        one = json.loads(line.decode())
+    except UnicodeDecodeError as problem:
+        raise ValueError("is not UTF-8: save the file as UTF-8") from problem
+    except json.JSONDecodeError as problem:
+        where = f"is no JSON from letter {problem.colno} on: {problem.msg}"
+        raise ValueError(f"{where}; mend the line or take it out") from problem
+    except RecursionError as problem:
+        raise ValueError("is nested too deep: take the line out") from problem
+    if not isinstance(one, dict):
+        raise ValueError('is no object: write {"what": ..., "value": ...}')  # noqa: TRY004
+    return one
 
 
-def reason(problem: ValidationError) -> str:
+def reason(problem: ValueError) -> str:
     """Tell the first thing that is wrong with a correction."""
+    if not isinstance(problem, ValidationError):
+        return str(problem)
     first = problem.errors(include_url=False, include_input=False)[0]
     where = ".".join(map(str, first["loc"]))
     words = first["msg"].removeprefix("Value error, ")

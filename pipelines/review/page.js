@@ -109,6 +109,9 @@ class Shape {
 
 const shapes = Array.from(document.querySelectorAll(".shape"), (group) => new Shape(group));
 
+// Beside the newline, what ends a line for some programs, but not in JSON.
+const escaped = (line) => line.replace(/[\u0085\u2028\u2029]/g, (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, "0")}`);
+
 function corrections() {
   const drawn = shapes.filter((one) => one.changed);
   const lines = drawn.map((one) => [one.group, { photo: one.photo, what: one.what, value: written(one.points) }]);
@@ -118,7 +121,7 @@ function corrections() {
   }
   return lines.map(([element, line]) => {
     const note = element.closest("article").querySelector(".note").value.trim();
-    return JSON.stringify(note ? { ...line, note } : line);
+    return escaped(JSON.stringify(note ? { ...line, note } : line));
   });
 }
 

@@ -155,6 +155,44 @@ def test_lines_of_json_say_the_same_as_a_table(tmp_path: Path) -> None:
     )
 
 
+GOOD = b'{"what": "width_m", "front_id": "5-2-0", "value": 6.1}'
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (b'{"what": "key",', "is no JSON from letter 17 on"),
+        (b"5_1.png,,,key,5-3,", "is no JSON from letter 2 on"),
+        (b'{"note": "caf\xe9"}', "is not UTF-8"),
+        (b"[" * 200_000, "is nested too deep"),
+        (b"[1]", "is no object"),
+        (b"9" * 5000, "Exceeds the limit"),
+        (b'{"what": "key", "photo": "\\ud800", "value": "5-3"}', "photo: "),
+    ],
+)
+def test_a_bad_line_is_told_by_its_number_and_harms_no_other(
+    line: bytes, said: str, tmp_path: Path
+) -> None:
+    late = GOOD.replace(b"5-2-0", b"5-3-0")
+    data = b"\xef\xbb\xbf" + b"\r\n".join([GOOD, line, b"", late])
+    (tmp_path / "corrections.jsonl").write_bytes(data)
+    found = corrections.read(Store(str(tmp_path)))
+    assert [one.subject for one in found.given] == ["5-2-0", "5-3-0"]
+    (rejection,) = found.rejections
+    assert rejection.key == "corrections.jsonl row 2"
+    assert rejection.detail.startswith(said)
+
+
+@pytest.mark.parametrize("letter", "\u2028\u2029\x85")
+def test_what_ends_lines_elsewhere_ends_none_here(letter: str, tmp_path: Path) -> None:
+    noted = json.loads(GOOD) | {"note": f"an{letter}atlas"}
+    text = json.dumps(noted, ensure_ascii=False) + "\n" + GOOD.decode()
+    (tmp_path / "corrections.jsonl").write_text(text.replace("5-2", "5-4", 1))
+    found = corrections.read(Store(str(tmp_path)))
+    assert not found.rejections
+    assert [one.note for one in found.given] == [f"an{letter}atlas", ""]
+
+
 def test_a_build_obeys_and_does_again_only_the_block(tmp_path: Path) -> None:
     city = painted.write_city(tmp_path)
     first = built(city)

@@ -152,7 +152,7 @@ def test_what_the_form_saves_is_accepted_as_it_is(browser: Any, other: Path) -> 
     shown.keyboard.press("Shift+ArrowLeft")
     card.locator("button[data-take='5-2']").click()
     card.get_by_label("width of 5-1-0, m").fill("9.5")
-    card.get_by_label("note").fill("by eye")
+    card.get_by_label("note").fill("by\u2028eye\u2029\x85")
     assert "4 corrections" in shown.locator("#count").inner_text()
     with shown.expect_download() as waiting:
         shown.get_by_role("button", name="Save corrections.jsonl").click()
@@ -161,8 +161,9 @@ def test_what_the_form_saves_is_accepted_as_it_is(browser: Any, other: Path) -> 
     assert troubles == []
     shown.close()
     lines = (other / "corrections.jsonl").read_text().splitlines()
-    told = [json.loads(line) for line in lines]
+    told = [json.loads(line) for line in lines]  # also those of programs that cut more
     assert told[0] == given
+    assert {one["note"] for one in told[1:]} == {"by\u2028eye\u2029\x85"}
     kinds = sorted(one["what"] for one in told)
     assert kinds == ["height_m", "key", "mask", "quad", "width_m"]
     after = shapes.read(next(one["value"] for one in told if one["what"] == "quad"))
