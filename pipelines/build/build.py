@@ -1,6 +1,5 @@
 """One build from its manifest to its published run."""
 
-import contextlib
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -31,12 +30,12 @@ from pipelines.build.report import (
     shown_before,
 )
 from pipelines.build.rows import WriteTable
+from pipelines.build.tidied import tidied
 from pipelines.index import asked
 from pipelines.index.asked import Asked
 from pipelines.index.row import Row
 from pipelines.models import one_thread
-from pipelines.store import Damaged, Store, held, pack, runs
-from pipelines.store.versions import Versions
+from pipelines.store import Damaged, Store, held, runs
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
 LEAST_SHOWN: Final = 0.5  # of the photos: a city that shows more is never held back
@@ -148,7 +147,7 @@ def carried_out(
                 store.drop(path)
             again += len(spoiled)
         else:
-            tidied(store, bench.versions)
+            tidied(options, store, bench.versions)
             metered(store, told, ours.shard)
             return shown
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
@@ -166,25 +165,13 @@ def made_alone(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> R
     again = sum(one.get("healed", 0) for one in done)
     report = replace(reported(store, work.run, work), healed=again)
     report = replace(report, run=asked_for.todo.run, cpu_seconds=cpu_s(done))
-    tidied(store, bench.versions)
+    tidied(options, store, bench.versions)
     return report
 
 
 def warned(tell: Tell, warning: str) -> None:
     """Tell what was noticed in the manifest."""
     tell("warning", f"warning: {warning}", warning=warning)
-
-
-def tidied(store: Store, versions: Versions) -> None:
-    """Pack the artifacts that lie about: what is done, the next run knows by a listing.
-
-    A disk that is full keeps them as they are.
-    """
-    with contextlib.suppress(OSError):
-        for stage in vars(versions):
-            if stopping.asked():
-                return
-            pack(store, versions.folder(stage))
 
 
 def metered(store: Store, told: dict[str, Any], shard: str) -> None:

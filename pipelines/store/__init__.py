@@ -7,7 +7,7 @@ code and parameters that made it, `runs` and `tables`.
 
 from pipelines.store.aside import Aside
 from pipelines.store.lock import Busy, busy, held
-from pipelines.store.packing import pack
+from pipelines.store.packing import Piece, pack, pack_piece, pieces
 from pipelines.store.seal import Damaged
 from pipelines.store.shelf import Shelf
 from pipelines.store.store import (
@@ -25,6 +25,7 @@ __all__ = [
     "Aside",
     "Busy",
     "Damaged",
+    "Piece",
     "Shelf",
     "Store",
     "Unstored",
@@ -33,6 +34,8 @@ __all__ = [
     "held",
     "key_of",
     "pack",
+    "pack_piece",
+    "pieces",
     "secretive",
     "textual",
 ]

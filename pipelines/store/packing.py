@@ -5,30 +5,60 @@ leaves an artifact twice and never not at all.
 """
 
 import contextlib
+import math
+import os
 from collections.abc import Collection, Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 import pyarrow as pa
 
 from pipelines.store import seal
 from pipelines.store.seal import Damaged
 from pipelines.store.shelf import PACKS, Entry, packed
-from pipelines.store.store import REJECTED, VERDICT, Store, key_of
+from pipelines.store.store import REJECTED, VERDICT, Store, key_of, remembered
 
 PACK_BYTES: Final = 32_000_000  # a worker holds a few of these
 PACK_COUNT: Final = 4096
 LEAST: Final = 64  # artifacts that are worth a pack
+FOLDERS: Final = 256  # in which the artifacts of a stage lie about
+
+
+class Piece(NamedTuple):
+    """What one process packs: some of what lies about in the folder of a stage."""
+
+    folder: str
+    part: int = 0  # by the first two digits of the keys
+    parts: int = 1
+
+    def has(self, key: str) -> bool:
+        """Tell whether an artifact is in it."""
+        return int(key[:2], 16) * self.parts // FOLDERS == self.part
+
+
+def pieces(store: Store, folder: str) -> list[Piece]:
+    """Part what is worth packing into pieces of some `PACK_COUNT` artifacts."""
+    loose = len(store.listed(folder).loose)
+    if loose < LEAST:
+        return []
+    parts = min(math.ceil(loose / PACK_COUNT), FOLDERS)
+    return [Piece(folder, part, parts) for part in range(parts)]
 
 
 def pack(store: Store, folder: str) -> int:
-    """Pack what lies about in the folder of a stage's version, and tell how much.
+    """Pack what lies about in the folder of a stage's version, and tell how much."""
+    return sum(pack_piece(store, one) for one in pieces(store, folder))
 
-    What is damaged is left: whoever needs it finds out, and makes it again.
+
+def pack_piece(store: Store, piece: Piece) -> int:
+    """Pack a piece, and tell how much it was; one pack is held at a time.
+
+    What is damaged is left: whoever needs it finds out, and makes it again. Of a store
+    that remembers listings a process lists each folder once, for all its pieces.
     """
-    there = store.listed(folder)
-    loose = sorted(there.loose)
-    if len(loose) < LEAST:
-        return 0
+    folder, known = piece.folder, store.era
+    there = remembered(store.root, folder, known, os.getpid()) if known else None
+    there = there or store.listed(folder)
+    loose = sorted(filter(piece.has, there.loose))
     twice = [key for key in loose if there.find(key) is not None]
     for key in twice:  # a process was killed in between
         remove(store, folder, key)

@@ -161,3 +161,17 @@ def test_an_object_is_written_by_one_request(
     asked = s3.requests(monkeypatch)
     Store(f"{bucket}/city").write_bytes("a/b/c", b"1")
     assert asked == ["PUT"]
+
+
+def test_pieces_are_parted_and_packed_by_whichever_process(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(packing, "PACK_COUNT", 7)
+    before = told(store)
+    parts = packing.pieces(store, FOLDER)
+    assert len(parts) == 15
+    assert [sum(one.has(key) for one in parts) for key in KEYS] == [1] * len(KEYS)
+    near = replace(store, era="1")  # which lists the folder once, before all pieces
+    assert sum(packing.pack_piece(near, one) for one in parts) == len(KEYS)
+    assert told(store) == before
+    assert not store.listed(FOLDER).loose
