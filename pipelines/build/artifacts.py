@@ -7,7 +7,7 @@ from typing import Any, Final
 import pyarrow as pa
 
 from nostalgin_core import evidence, inpaint, rectify, steps
-from nostalgin_core.borrow import Borrowed, Fit
+from nostalgin_core.borrow import Borrowed
 from nostalgin_core.records import (
     Elevation,
     Facade,
@@ -109,19 +109,13 @@ class Lent:
     front: int
 
 
-def unread(photo: str, facade: int, why: str) -> Fit:
-    """Tell of a lender whose elevation can't be read."""
-    words = f"its elevation can't be read: {why}"
-    return Fit(photo, facade, False, words, 0.0, 0, 0.0, 0)  # noqa: FBT003
-
-
-def borrowed_table(made: Borrowed, lost: list[Fit]) -> pa.Table:
+def borrowed_table(made: Borrowed) -> pa.Table:
     """Write a front that neighbours lent to, and where what they lent comes from."""
     marks = made.elevation.evidence
     row = tables.to_row(made.elevation) | {
         "sources": tables.to_png(made.sources),
         "photos": list(made.photos),
-        "fits": json.dumps([asdict(one) for one in (*made.fits, *lost)]),
+        "fits": json.dumps([asdict(one) for one in made.fits]),
         "unseen": made.unseen,
         "left": int(inpaint.holes(marks).sum()),
         "front": int((marks != evidence.NOTHING).sum()),

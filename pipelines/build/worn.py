@@ -21,7 +21,7 @@ from pipelines.build.artifacts import Lent
 from pipelines.build.bench import Bench
 from pipelines.build.stages import FacadeRef, rectified
 from pipelines.models import Once
-from pipelines.store import Damaged, tables
+from pipelines.store import tables
 from pipelines.store.versions import Versions
 
 
@@ -95,16 +95,13 @@ def borrowed(one: Worn, bench: Bench) -> Worn:
 
 
 def _borrowed(one: Worn, bench: Bench) -> pa.Table:
-    """Fill a front from its neighbours' elevations; one that can't be read is told."""
-    own = _elevation(one.own, bench)
-    lenders, lost = [], []
-    for each in one.lenders:
-        photo, facade = each.seen.photo, each.seen.facade
-        try:
-            lenders.append(Lender(photo, _elevation(each, bench)))
-        except (Damaged, OSError, ValueError) as problem:
-            lost.append(artifacts.unread(photo, facade, str(problem)))
-    return artifacts.borrowed_table(borrow.borrow(own, lenders), lost)
+    """Fill a front from its neighbours' elevations.
+
+    The artifact's key names all of them: one that can't be read now makes the front
+    crash, so that the next run reads it again.
+    """
+    lenders = [Lender(each.seen.photo, _elevation(each, bench)) for each in one.lenders]
+    return artifacts.borrowed_table(borrow.borrow(_elevation(one.own, bench), lenders))
 
 
 def _elevation(ref: FacadeRef, bench: Bench) -> Elevation:

@@ -1,5 +1,6 @@
 """A front's worker reads elevations of its few photographs, and fills one of them."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -94,16 +95,24 @@ def test_a_second_run_finds_what_the_first_made(
     assert path.read_bytes() == bytes_
 
 
-def test_a_lender_that_cannot_be_read_is_left_out_with_a_word(
+def test_a_front_whose_lender_cannot_be_read_now_is_made_by_the_next_run(
     front: Worn, bench: Bench, tmp_path: Path
 ) -> None:
     key = VERSIONS.rectify_key("second")
     lost = tmp_path / VERSIONS.path("rectify", key)
-    lost.write_bytes(lost.read_bytes()[:200])
-    made = borrowed(front, bench)  # its photograph is not there to make it again
+    data = lost.read_bytes()
+    lost.write_bytes(data[:200])
+    with pytest.raises(FileNotFoundError):  # its photograph, to make it again
+        borrowed(front, bench)
+    assert not (tmp_path / "artifacts" / "borrow").exists()
+    lost.write_bytes(data)
+    made = borrowed(front, bench)
     assert made.lent is not None
-    assert made.lent.photos == ("first",)
-    assert "can't be read" in made.lent.fits
+    fits = json.loads(made.lent.fits)
+    assert [(one["photo"], one["fits"]) for one in fits] == [
+        ("first", True),
+        ("second", False),
+    ]
 
 
 def test_a_front_that_nobody_else_shows_leaves_nothing(
