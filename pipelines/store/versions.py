@@ -39,7 +39,7 @@ from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 8,
+    "segment": 9,
     "matte": 7,
     "rectify": 8,
     "compare": 1,
