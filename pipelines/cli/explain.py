@@ -2,13 +2,16 @@
 
 import time
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
 from pipelines import bounded
-from pipelines.cli.launch import ModelsFolder
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, ModelsFolder
 from pipelines.console import Quiet, Voice, errors, fail, unwritable
+
+if TYPE_CHECKING:
+    from pipelines.explain import Redrawn
 
 EXAMPLES: Final = """
 Examples:
@@ -16,6 +19,8 @@ Examples:
   nostalgin explain photo.jpg -o out         [dim]# pictures and explain.json in out/[/]
 
   nostalgin explain photo.jpg -o out --no-placard
+
+  nostalgin explain photo.jpg -o out --corrections city/corrections.csv
 """
 
 
@@ -33,13 +38,17 @@ def explain_command(
             help="Inpaint the neighbours' facades, too; it takes time.",
         ),
     ] = False,
+    corrections: Annotated[
+        Path | None,
+        typer.Option(help="A city's corrections: what they draw on it is obeyed."),
+    ] = None,
     models: ModelsFolder = None,
     quiet: Quiet = False,
 ) -> None:
     """Take one photo through every stage and show what each made of it.
 
     Writes every stage as a PNG, the stages side by side as panel.png, and their numbers
-    as explain.json. The file's name is never looked at.
+    as explain.json. The file's name is never looked at, but to find its corrections.
     """
     started = time.process_time()
     from pipelines.models import one_thread
@@ -52,16 +61,18 @@ def explain_command(
         data = bounded.read(photo, bounded.PHOTO_BYTES)
     except OSError as problem:
         raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
+    voice = Voice(errors, quiet=quiet)
+    mended = redrawn(photo, data, corrections, voice)
     try:
         networks = shelf.Models(str(models or shelf.PACKAGED)).networks(placard=placard)
-        report = explain.explain(data, out, networks, started=started, every=every)
+        given = {"every": every, "drawn": mended.drawn}
+        report = explain.explain(data, out, networks, started=started, **given)
     except explain.Unreadable as problem:
         raise fail(f"{photo}: {problem}") from problem
     except shelf.Unlocked as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(out, problem) from problem
-    voice = Voice(errors, quiet=quiet)
     targets = sum(one["target"] for one in report["facades"])
     voice.echo(
         f"{len(report['facades'])} facades ({targets} target), "
@@ -71,6 +82,28 @@ def explain_command(
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
         voice.echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
     voice.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
+    if mended.refused:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
+
+
+def redrawn(photo: Path, data: bytes, listed: Path | None, voice: Voice) -> "Redrawn":
+    """Read what is drawn on a photo, if that is asked for, and tell what is obeyed."""
+    from pipelines import explain
+
+    if listed is None:
+        return explain.Redrawn()
+    try:
+        found = explain.redrawn(photo, data, listed)
+    except OSError as problem:
+        words = "name a corrections.csv or .jsonl"
+        raise fail(f"{listed}: {problem.strerror}; {words}") from problem
+    for line in found.told:
+        voice.echo(line)
+    for line in found.refused:
+        voice.echo(f"rejected {line}")
+    if found.empty:
+        voice.echo(f"{listed} says nothing of {photo.name}")
+    return found
 
 
 def explain_front_command(

@@ -5,7 +5,7 @@ and blocks as corrected, and what each correction changed. Open `corrections` fi
 """
 
 from pipelines.corrections.applied import Applied, applied
-from pipelines.corrections.corrections import read
+from pipelines.corrections.corrections import of_file, read
 from pipelines.corrections.fitting import fitting
 from pipelines.corrections.found import Found, found, hashed, published
 from pipelines.corrections.measured import measured
@@ -18,6 +18,7 @@ __all__ = [
     "found",
     "hashed",
     "measured",
+    "of_file",
     "published",
     "read",
 ]

@@ -13,8 +13,10 @@ photo,front_id,building_id,what,value,note
 import codecs
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any, Final, Literal, Self
 
 import numpy as np
@@ -27,12 +29,14 @@ from pydantic import (
 )
 
 from nostalgin_core.records import Rejection
+from pipelines import bounded
 from pipelines.corrections import shapes
 from pipelines.index import comma
 from pipelines.index.cells import LEAST_M, MOST_FRONTS, MOST_M
 from pipelines.store import Store
 
 CSV: Final = "corrections.csv"
+JSONL: Final = ".jsonl"
 LINES: Final = "corrections.jsonl"
 NAMES: Final = (CSV, LINES)
 CORRECTION_BYTES: Final = 50_000_000
@@ -162,14 +166,30 @@ def read(store: Store) -> Corrections:
 
     Of two about the same thing the later counts.
     """
+    found = [name for name in NAMES if store.exists(name)]
+    return taken((n, partial(store.read_bytes, n, CORRECTION_BYTES)) for n in found)
+
+
+def of_file(path: Path) -> Corrections:
+    """Read one file of corrections: objects a line if it is called .jsonl, else CSV.
+
+    Raises:
+        OSError: if it can't be read.
+    """
+    data = bounded.read(path, CORRECTION_BYTES)
+    return taken([(path.name, lambda: data)])
+
+
+def taken(files: Iterable[tuple[str, Callable[[], bytes]]]) -> Corrections:
+    """Read files one after the other, as if they were one."""
     given: dict[tuple[str, str], Correction] = {}
     rejections: list[Rejection] = []
-    digest = hashlib.sha256()
-    found = [name for name in NAMES if store.exists(name)]
-    for name in found:
+    digest, some = hashlib.sha256(), False
+    for name, read_bytes in files:
+        some = True
         try:
-            data = store.read_bytes(name, CORRECTION_BYTES)
-            rows = lines(data) if name == LINES else table(data)
+            data = read_bytes()
+            rows = lines(data) if name.endswith(JSONL) else table(data)
         except (OSError, ValueError) as problem:
             why = f"{getattr(problem, 'strerror', None) or problem}; mend the file"
             rejections.append(Rejection(name, "corrections", "unreadable file", why))
@@ -185,7 +205,7 @@ def read(store: Store) -> Corrections:
                 told = reason(problem)
                 bad = Rejection(key, "corrections", "nonsense correction", told)
                 rejections.append(bad)
-    sha256 = digest.hexdigest() if found else ""
+    sha256 = digest.hexdigest() if some else ""
     return Corrections(tuple(given.values()), tuple(rejections), sha256)
 
 

@@ -23,7 +23,7 @@ import pyarrow.parquet as pq
 
 from nostalgin_core.placard import Key, around
 from pipelines import build, index
-from pipelines.evaluate import Unmeasurable, labels
+from pipelines.evaluate import Unmeasurable, labels, orders
 
 DECOYS: Final = 10  # for each true key
 SEEDS: Final = 5
@@ -62,7 +62,7 @@ def evaluate(
     for seed, keys in enumerate(lists):
         indexed(photos, city, keys, models)
         runs.append({"seed": seed} | judged(city, truth, titles))
-    return {
+    report = {
         "photos": len(truth),
         "readable": sum(key is not None for key in truth.values()),
         "keys": len(every),
@@ -70,6 +70,12 @@ def evaluate(
         "cpu_s_a_photo": cpu_s / len(truth),
         "runs": runs,
     }
+    listed = folder / orders.LIST
+    if not listed.is_file():
+        return report
+    index_by(photos, city, *orders.hidden(listed, lists[0]), models)
+    report["order"] = orders.judged(city, listed)
+    return report
 
 
 def told(label: dict[str, Any]) -> Key | None:
@@ -91,11 +97,24 @@ def hidden(keys: Sequence[Key], seed: int) -> list[Key]:
 
 def indexed(photos: Path, city: Path, keys: Sequence[Key], models: str) -> float:
     """Index photographs by their boards, in this process; give its CPU seconds."""
+    names = ("block", "lot", "street", "address")
+    rows = [(*key, "Elm Street", 1 + 2 * n) for n, key in enumerate(keys)]
+    return index_by(photos, city, names, rows, models)
+
+
+def index_by(
+    photos: Path,
+    city: Path,
+    names: Sequence[str],
+    rows: Sequence[Sequence[Any]],
+    models: str,
+) -> float:
+    """Index photographs by their boards and a list, and give the CPU seconds."""
     catalogue = city / "list.csv"
     with catalogue.open("w", newline="") as file:
-        rows = csv.writer(file)
-        rows.writerow(("block", "lot", "street", "address"))
-        rows.writerows((*key, "Elm Street", 1 + 2 * n) for n, key in enumerate(keys))
+        written = csv.writer(file)
+        written.writerow(names)
+        written.writerows(rows)
     beam = ("--stage_seconds=0",)  # no process of its own, whose seconds are not ours
     options = build.options(str(city), models=models, beam=beam)
     ask = index.Ask(partial(build.boards, options))
@@ -138,4 +157,5 @@ def text(report: dict[str, Any]) -> str:
     for kind in ("wrong", "missed"):
         names = sorted({one for run in report["runs"] for one in run[kind]})
         lines += [f"{kind}: {one}" for one in names]
+    lines += orders.lines(report["order"]) if "order" in report else []
     return "\n".join(lines)

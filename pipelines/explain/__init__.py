@@ -5,7 +5,15 @@ All views of one front of a city: `explain_front`.
 Paper: the figure `complete`. Open `explain` first.
 """
 
+from pipelines.explain.drawn import Redrawn, redrawn
 from pipelines.explain.explain import Unreadable, explain
 from pipelines.explain.front import Unshown, explain_front
 
-__all__ = ["Unreadable", "Unshown", "explain", "explain_front"]
+__all__ = [
+    "Redrawn",
+    "Unreadable",
+    "Unshown",
+    "explain",
+    "explain_front",
+    "redrawn",
+]

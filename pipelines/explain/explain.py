@@ -19,7 +19,7 @@ import numpy as np
 
 from nostalgin_core import evidence, inpaint, quantise, steps
 from nostalgin_core.arrays import Gray
-from nostalgin_core.records import Elevation, Facade, Instance, Photo, Rejection
+from nostalgin_core.records import Drawn, Elevation, Facade, Instance, Photo, Rejection
 from nostalgin_core.rectify import lines
 from nostalgin_core.steps import Networks, Stages
 from pipelines.explain import draw
@@ -40,11 +40,13 @@ def explain(
     *,
     started: float,
     every: bool = False,
+    drawn: Drawn = steps.UNDRAWN,
 ) -> dict:
     """Take a photo through every stage and write all there is to see into a folder.
 
     The facades of other buildings than the photo is a record of are inpainted only if
-    `every` facade is wanted; else their holes stay open, with evidence of nothing.
+    `every` facade is wanted; else their holes stay open, with evidence of nothing. What
+    is `drawn` takes the place of what was found.
 
     The total counts from `started`, the process's CPU seconds when work on this photo
     began, so that it is honest about loading.
@@ -56,7 +58,7 @@ def explain(
     """
     seconds: dict[str, float] = {"load": time.process_time() - started}
     made = steps.gather(
-        timed(steps.steps(data, networks, name=NAME, every=every), seconds)
+        timed(steps.steps(data, networks, name=NAME, every=every, drawn=drawn), seconds)
     )
     if made.photo is None:
         raise Unreadable(made.rejections[0].reason + ": " + made.rejections[0].detail)
