@@ -57,7 +57,7 @@ class Report:
     blocks: int
     buildings: int
     assumed: int
-    rejections: Rejections
+    rejections: Iterable[dict[str, Any]]
     counted: tuple[tuple[str, int], ...] = ()  # rejections by stage and reason
     healed: int = 0  # artifacts that were damaged and made again
     held: bool = False  # a better site was not replaced
@@ -65,6 +65,7 @@ class Report:
     widths_assumed: int = 0  # of the fronts: no list gave them
     heights_assumed: int = 0  # of the buildings: nothing supports them
     cpu_seconds: float = 0.0  # that the stages spent
+    tabled: bool = True  # in the run's folder; else artifacts alone were made
 
     @property
     def rejected_share(self) -> float:

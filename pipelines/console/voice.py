@@ -90,14 +90,16 @@ def summed(report: "Report", voice: Voice) -> None:
     if report.healed:
         words = f"{report.healed} damaged artifacts were made again"
         voice.say("healed", words, artifacts=report.healed)
+    where = f"; all rejections are in runs/{report.run}/rejections.parquet"
     voice.say(
         "done",
         f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
         f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
         f"{report.buildings} buildings, {report.assumed} of them assumed; "
         f"{report.widths_assumed} of {report.fronts} widths and "
-        f"{report.heights_assumed} of {report.buildings} heights are assumed; all "
-        f"rejections are in runs/{report.run}/rejections.parquet",
+        f"{report.heights_assumed} of {report.buildings} heights are assumed"
+        + where
+        * report.tabled,
         run=report.run,
         photos=report.photos,
         rejected_photos=report.rejected_photos,

@@ -1,7 +1,7 @@
 """What is stale is redone alone, and the next run is published."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
 
@@ -96,6 +96,8 @@ def made_ahead(
     """Make artifacts that a later run finds, and publish nothing."""
     report = build.made_alone(options, asked_for, watch)
     store, run = asked_for.bench.store, asked_for.todo.run
+    # Their table goes with the others of what was redone.
+    report = replace(report, rejections=tuple(report.rejections), tabled=False)
     merged.drop(store, run)
     if not store.exists(f"runs/{run}/run.json"):  # none that was published
         drop_run(store, run)
