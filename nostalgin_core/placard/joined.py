@@ -22,7 +22,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from nostalgin_core.placard import misread
+from nostalgin_core.placard import misread, pairs
 from nostalgin_core.placard.misread import Key
 from nostalgin_core.placard.placard import parse
 
@@ -121,10 +121,8 @@ def joined(looks: Sequence[Look], keys: Keys | None) -> Joined:
         candidates = keys.near(every) | set(literals)
     if not candidates:
         return Joined(None, text=telling[0][0].text)
-    table = np.array(
-        [[in_look(runs, key) for runs in telling] for key in sorted(candidates)]
-    )
-    return judged(sorted(candidates), table, keys, literals, telling)
+    ordered = sorted(candidates)
+    return judged(ordered, in_looks(telling, ordered), keys, literals, telling)
 
 
 def runs_of(look: Look) -> list[Run]:
@@ -174,9 +172,17 @@ def judged(
     )
 
 
-def in_look(runs: Sequence[Run], key: Key) -> float:
-    """Sum up what must have gone wrong in one look, in the best of its runs."""
-    return min(NOISE, *(run.left_out + misread.cost(run.text, key) for run in runs))
+def in_looks(
+    telling: Sequence[Sequence[Run]], candidates: Sequence[Key]
+) -> Float[np.ndarray, "key look"]:
+    """Sum up what must have gone wrong in each look, in the best of its runs."""
+    texts = sorted({run.text for runs in telling for run in runs})
+    costs = dict(zip(texts, pairs.costs(texts, candidates), strict=True))
+    best = [
+        np.min([run.left_out + costs[run.text] for run in runs], axis=0)
+        for runs in telling
+    ]
+    return np.minimum(NOISE, np.transpose(best))
 
 
 def number(text: str) -> bool:

@@ -72,15 +72,6 @@ def halves(key: Key) -> tuple[str, str]:
     return block.upper(), f"{lot.upper()}{LETTER}"
 
 
-def cost(text: str, key: Key) -> float:
-    """Sum up what must have gone wrong if a `cleaned` text is of a key, in nats.
-
-    A reader may have missed one half of the board: the other tells nothing of it.
-    """
-    block, lot = halves(key)
-    return min(whole(text, key), HALF + min(apart(text, block), apart(text, f"-{lot}")))
-
-
 def whole(text: str, key: Key) -> float:
     """Sum up what must have gone wrong if a text is of a whole key, in nats."""
     return apart(text, spelt(key))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nostalgin_core.placard import misread
+from nostalgin_core.placard import misread, pairs
 from nostalgin_core.placard.joined import Look, around, joined, known
 
 Key = tuple[str, str]
@@ -55,7 +55,7 @@ def test_a_text_costs_nothing_as_its_own_key_and_something_as_any_other(
 def test_costs_are_never_negative_and_a_half_never_costs_more_than_the_whole(
     text: str, key: Key
 ) -> None:
-    assert 0 <= misread.cost(text, key) <= misread.whole(text, key)
+    assert 0 <= pairs.costs([text], [key])[0, 0] <= misread.whole(text, key)
 
 
 @FEW
@@ -145,7 +145,8 @@ def test_the_nearest_keys_are_those_that_a_search_of_all_finds() -> None:
 @pytest.mark.parametrize("key", [("12-A", "8"), ("1-2", "8"), ("993", "8-9")])
 def test_a_block_or_a_lot_may_have_a_dash_in_it(key: Key) -> None:
     text = f"{key[0]} - {key[1]} M"
-    assert misread.cost(misread.cleaned(text.replace(" ", "")), key) == 0
+    bare = misread.cleaned(text.replace(" ", ""))
+    assert pairs.costs([bare], [key])[0, 0] == 0
     found = joined(looks(text, text), known({key, *decoys(("993", "8"))}))
     assert found.key in (key, None)
     assert not found.sure or found.key == key
