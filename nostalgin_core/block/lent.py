@@ -9,6 +9,8 @@ from nostalgin_core.block.cuboid import LEAST_CLEAR
 from nostalgin_core.records import Assignment, Front, Seen
 from nostalgin_core.views import Claim
 
+WORN = 0.8  # how probably a facade shows a front that wears it: a wrong one is seen
+
 
 def lent(
     fronts: Sequence[Front],
@@ -33,7 +35,8 @@ def lent(
     offers: dict[str, list[Assignment]] = defaultdict(list)
     for claim in claims:
         texture = claim.photo, claim.facade
-        if claim.front_id in bare and texture in facades and texture not in worn:
+        sure = claim.probability >= WORN
+        if sure and claim.front_id in bare and texture in facades.keys() - worn:
             one = replace(facades[texture], target_score=claim.probability)
             if not assign.fault(one) and one.clear >= LEAST_CLEAR:
                 score = assign.score(one)

@@ -20,14 +20,18 @@ from nostalgin_core.arrays import Mask
 from nostalgin_core.borrow import patched, tones
 from nostalgin_core.borrow.aligned import Aligned, aligned, warped
 from nostalgin_core.records import Elevation
-from nostalgin_core.views import View
+from nostalgin_core.views import Marks, View
 
 Sources = UInt8[np.ndarray, "h w"]
 
 DRAWN_IN_PX: Final = 3  # what a lender saw, beside what hides it there
 LEAST_LIKE: Final = 0.35  # correlation of all that both saw
+# Light falls otherwise, and what is of one front looks different: then so many patches
+# that agree, of those found, tell that both are, unless they look like nothing at all.
+MANY, MOST, LEAST_LIT = 40, 0.6, 0.15
 LEAST_AGREEING: Final = 0.4  # the same round a texel
 LEAST_SHARP: Final = 0.3  # pixels of the lender's photograph for a texel
+MIRRORED: Final = "one of both is printed in a mirror: turn the photograph round"
 CLEAR_PX: Final = 12.0  # from where a lender is hidden, a texel has its full worth
 
 
@@ -89,6 +93,8 @@ def borrow(own: Elevation, lenders: Sequence[Lender]) -> Borrowed:
         rough = views.overlay(here, views.marks(seen))
         exact = None if rough is None else aligned(known, seen, rough.matrix)
         fit, over = _laid(one, known, seen, exact, wanted)
+        if fit.likeness < LEAST_LIT and mirrored(known, here, seen):
+            fit = replace(fit, why=MIRRORED)
         fits.append(fit)
         laid.append(over)
     usable = [(n, one) for n, one in enumerate(laid) if one is not None]
@@ -116,6 +122,16 @@ def over(own: Elevation, other: Elevation) -> View | None:
     return None if exact is None else warped(seen, exact.matrix, own.image.shape)
 
 
+def mirrored(own: View, marks: Marks, seen: View) -> bool:
+    """Tell whether an elevation fits another one, of these `marks`, in a mirror."""
+    turned = View(*(np.ascontiguousarray(one[:, ::-1]) for one in seen))
+    rough = views.overlay(marks, views.marks(turned))
+    exact = None if rough is None else aligned(own, turned, rough.matrix)
+    if exact is None:
+        return False
+    return views.likeness(own, turned, exact.matrix) >= LEAST_LIKE
+
+
 def _laid(
     one: Lender, own: View, seen: View, exact: Aligned | None, wanted: Mask
 ) -> tuple[Fit, _Laid | None]:
@@ -127,7 +143,7 @@ def _laid(
     told = replace(
         apart, likeness=alike, patches=exact.patches, error_px=exact.error_px
     )
-    if alike < LEAST_LIKE:
+    if not of_one(exact, alike):
         return replace(told, why="what both saw looks different"), None
     shape = own.image.shape
     there = warped(seen, exact.matrix, shape, DRAWN_IN_PX)
@@ -140,6 +156,12 @@ def _laid(
     usable = there.known & wanted & (agree >= LEAST_AGREEING) & (sharp >= LEAST_SHARP)
     fit = replace(told, fits=True)
     return fit, _Laid(image, np.where(usable, worth, 0).astype(np.float32))
+
+
+def of_one(exact: Aligned, alike: float) -> bool:
+    """Tell by likeness, or by many patches that agree, if views are of one front."""
+    sure = exact.patches >= MANY and exact.share >= MOST
+    return alike >= (LEAST_LIT if sure else LEAST_LIKE)
 
 
 def _filled(

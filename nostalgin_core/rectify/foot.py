@@ -8,6 +8,9 @@ fronts that face one way along a street have their feet on one line.
 
     y(foot) - y(horizon) <= (y(touch) - y(horizon)) / BEFORE
 
+What they leave open is not all the front's: the farther below what a camera saw the
+foot is thought to be, the less of that is true.
+
 The plane is `rectify`'s: x to the right and y down, in equal units, where what is as
 high as the camera lies on a horizontal line.
 """
@@ -30,6 +33,10 @@ FREE_PX: Final = 7  # below where something touches the ground, nothing else hid
 REACH: Final = 3.0  # widths of a front, to either side, within which the street is one
 ALIKE_DEG: Final = 6.0  # fronts that face one way
 SEEN_SHARE: Final = 0.3  # of a row, to be worth keeping whatever the witnesses say
+# Of what is thought to be hidden below, and beside that of what is seen above: so far
+# down labelled feet are, about.
+TRUE_SHARE: Final = 0.3
+USUAL_SHARE: Final = 0.05
 
 
 class Touch(NamedTuple):
@@ -74,7 +81,8 @@ def feet(
     """Tell how far down each front reaches in its plane; None of those without one.
 
     It is the least of its own bound, what stands before it, and the median of what
-    these say of the fronts beside it; but no lower row that a camera saw is given up.
+    these say of the fronts beside it, and of what is hidden below the part that is
+    usual; but no lower row that a camera saw is given up.
     """
     kept = [
         None if one is None else lowest_seen(facade, one)
@@ -96,7 +104,9 @@ def feet(
             for other, foot in zip(stands, alone, strict=True)
             if other is not None and foot is not None and parallel(one, other)
         ]
-        found.append(max(min(own, float(np.median(every))), seen))
+        deep = max(min(own, float(np.median(every))) - seen, 0.0)
+        usual = USUAL_SHARE * (seen - float(one.bounds[1])) + TRUE_SHARE * deep
+        found.append(seen + min(deep, usual))
     return tuple(found)
 
 

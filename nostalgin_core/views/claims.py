@@ -18,7 +18,7 @@ from nostalgin_core.views.agreement import Alike, Belief
 from nostalgin_core.views.places import Ring, ringed
 from nostalgin_core.views.stretch import Stretch
 
-CLAIMED: Final = 0.8  # a facade that is less probably of any front is of none
+CLAIMED: Final = 0.6  # a facade that is less probably of any front is of none
 Told = Literal["own", "order", "appearance"]  # by its lot, its neighbours, its looks
 
 

@@ -47,11 +47,24 @@ def compared(
         return view, marks(view)
 
     known = street(fronts, filed, stretches)
+    along = places_of(known)
     alike: dict[Pair, float] = {}
     for pairs in (worth, astray):
-        for a, b in sorted(pairs(known, alike)):
+        # Neighbours one after the other, so that few elevations are read twice.
+        for a, b in sorted(
+            pairs(known, alike), key=lambda pair: (along[pair[0]], pair)
+        ):
             alike[a, b] = told(seen(a), seen(b))
-    return alike
+    return {pair: alike[pair] for pair in sorted(alike)}
+
+
+def places_of(known: Street) -> dict[Texture, tuple[int, int]]:
+    """Tell where along its ring each facade most probably stands."""
+    beliefs = alone(known)
+    return {
+        texture: (known.strips[texture[0]].ring, int(beliefs[texture[0]][row].argmax()))
+        for texture, row in known.rows().items()
+    }
 
 
 def worth(known: Street, alike: Mapping[Pair, float]) -> set[Pair]:

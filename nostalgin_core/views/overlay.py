@@ -71,7 +71,7 @@ def matches(first: Marks, second: Marks) -> Matches:
     like = first.looks @ second.looks.T
     mutual = np.zeros(like.shape, bool)
     if min(like.shape) > 0:
-        mutual = among_most(like) & among_most(like.T).T
+        mutual = among_most(like) & among_most(np.ascontiguousarray(like.T)).T
     i, j = np.nonzero(mutual)
     apart = 2 - 2 * like[i, j]
     return Matches(
@@ -85,9 +85,13 @@ def matches(first: Marks, second: Marks) -> Matches:
 
 def among_most(like: Float32[np.ndarray, "n m"]) -> Bool[np.ndarray, "n m"]:
     """Tell of each row which of its entries are the largest."""
+    left = np.array(like)
     kept = np.zeros(like.shape, bool)
-    most = np.argpartition(-like, min(ALIKE, like.shape[1]) - 1, axis=1)[:, :ALIKE]
-    np.put_along_axis(kept, most, values=True, axis=1)
+    rows = np.arange(len(like))
+    for _ in range(min(ALIKE, like.shape[1])):
+        most = left.argmax(axis=1)
+        kept[rows, most] = True
+        left[rows, most] = -np.inf
     return kept
 
 
@@ -96,9 +100,9 @@ def proposals(some: Matches) -> list[Bool[np.ndarray, " n"]]:
     asked = np.argsort(-some.weight, kind="stable")[:PROPOSED]
     scale = np.exp(some.growth[asked])[:, None, None]
     lies = some.b[asked][:, None] + scale * (some.a[None] - some.a[asked][:, None])
-    off = np.linalg.norm(lies - some.b[None], axis=2)
+    x, y = np.moveaxis(lies - some.b[None], 2, 0)
     grows = np.abs(some.growth[None] - some.growth[asked][:, None])
-    agree = (off < 3 * some.near_px) & (grows < SIZES)
+    agree = (x * x + y * y < (3 * some.near_px) ** 2) & (grows < SIZES)
     order = np.argsort(-(agree * some.weight).sum(axis=1), kind="stable")
     return [agree[one] for one in order[:FITTED] if agree[one].sum() >= FEWEST]
 

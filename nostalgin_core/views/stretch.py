@@ -7,10 +7,13 @@ the camera from that plane, which are the same for all its fronts, and unknown.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from nostalgin_core.records import Seen, Standpoint, Texture
+
+EDGE: Final = 0.03  # of a photo's width: film borders are narrower
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +28,7 @@ class Stretch:
     left_px: float  # centre in the photo
     target_score: float
     score: float
+    cut: bool = False  # by the left or right edge of the photo: it is wider than that
 
     @property
     def texture(self) -> Texture:
@@ -51,4 +55,12 @@ def stretch(seen: Seen, stood: Standpoint) -> Stretch:
         left_px=seen.left_px,
         target_score=seen.target_score,
         score=seen.score,
+        cut=cut(stood),
     )
+
+
+def cut(stood: Standpoint) -> bool:
+    """Tell whether a facade ends where its photo does, to the left or right."""
+    wide, _ = stood.size_px
+    x_px = stood.quad_px[:, 0]
+    return bool(x_px.min() < EDGE * wide or x_px.max() > (1 - EDGE) * wide)

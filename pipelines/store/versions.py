@@ -41,12 +41,12 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 9,
     "matte": 7,
-    "rectify": 8,
+    "rectify": 9,
     "compare": 1,
     "inpaint": 6,
     "block": 7,
     "thumbnail": 2,
-    "borrow": 1,
+    "borrow": 2,
     "placard": 1,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {

@@ -140,6 +140,28 @@ def test_a_shop_that_was_rebuilt_in_between_lends_nothing(
     assert np.mean(made.elevation.evidence[CAR] == rests.ANOTHER) < 0.1
 
 
+def test_a_mirror_printed_negative_lends_nothing_and_is_named(
+    own: Elevation, truth: np.ndarray
+) -> None:
+    made = borrow.borrow(own, [lender("b", truth[:, ::-1].copy(), OTHER_CAR)])
+    (fit,) = made.fits
+    assert not fit.fits
+    assert "mirror" in fit.why
+    assert made.photos == ()
+    assert np.array_equal(made.elevation.image, own.image)
+    other = borrow.borrow(own, [lender("b", wall(2), OTHER_CAR)])
+    assert "mirror" not in other.fits[0].why
+
+
+def test_a_lot_taken_again_after_it_was_rebuilt_is_told_beside_one_that_was_not(
+    own: Elevation, truth: np.ndarray
+) -> None:
+    views = [lender("later", wall(3), OTHER_CAR), lender("then", truth, OTHER_CAR)]
+    made = borrow.borrow(own, views)
+    assert {one.photo: one.fits for one in made.fits} == {"later": False, "then": True}
+    assert made.photos == ("then",)
+
+
 def test_what_a_lender_s_car_hides_is_not_taken_from_it(truth: np.ndarray) -> None:
     own = elevation(truth, behind(CAR) | behind(OTHER_CAR))
     made = borrow.borrow(own, [lender("b", truth, OTHER_CAR)])

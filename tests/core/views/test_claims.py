@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nostalgin_core.records import Front
-from nostalgin_core.views import Alike, Claim, Stretch, claimed
+from nostalgin_core.records import Front, Standpoint
+from nostalgin_core.views import Alike, Claim, Stretch, claimed, stretch
 from tests.core import listed
 
 WIDTHS_M = (7.6, 6.1, 15.2, 7.6, 9.1, 30.0, 6.1, 12.2)
@@ -159,3 +159,48 @@ def test_the_order_of_photographs_and_facades_changes_nothing() -> None:
     assert [replace(one, probability=0.0) for one in there] == [
         replace(one, probability=0.0) for one in again
     ]
+
+
+def test_a_front_that_the_photograph_cuts_off_is_told_by_what_is_seen() -> None:
+    fronts = ring()
+    *own, last = photographed(fronts, (2, 3, 4), 3)
+    sliver = replace(last, right=last.left + 0.15 * last.width, cut=True)
+    claims = claimed(fronts, {"p": ["9-3-0"]}, [*own, sliver])
+    assert lots(claims) == {0: "9-2-0", 1: "9-3-0", 2: "9-4-0"}
+    whole = replace(sliver, cut=False)
+    doubted = claimed(fronts, {"p": ["9-3-0"]}, [*own, whole])
+    (cut,), before = ([c for c in made if c.facade == 2] for made in (claims, doubted))
+    assert not before or before[0].probability < cut.probability
+
+
+def test_a_target_that_order_and_widths_contradict_is_not_claimed() -> None:
+    """The board's arrow hit the neighbour to the left of the lot that is meant."""
+    fronts = ring((20.0, 8.0, 14.4, 8.0, 9.0, 7.0, 12.0, 20.0))
+    left, meant, right = photographed(fronts, (0, 1, 2), 1)
+    seen = [
+        replace(left, target_score=0.97),
+        replace(meant, target_score=0.07),
+        replace(right, right=right.left + 0.3 * right.width, cut=True),
+    ]
+    claims = lots(claimed(fronts, {"p": ["9-1-0"]}, seen))
+    assert claims.get(0) != "9-1-0"
+    assert {n: lot for n, lot in claims.items() if lot != fronts[n].front_id} == {}
+
+
+def test_a_facade_at_the_edge_of_its_photo_is_cut_off() -> None:
+    stood = Standpoint(
+        size_px=(600, 800),
+        photo_from_camera=np.eye(3),
+        focal_sd=0.1,
+        position=(0.5, 0.2, 2.0),
+        position_sd=0.1,
+        front_from_camera=np.eye(3),
+        quad_px=np.array([[100.0, 100], [400, 100], [400, 700], [100, 700]]),
+        roof=1.4,
+    )
+    one = listed.seen()
+    assert not stretch(one, stood).cut
+    for shift in (-95, 190):
+        assert stretch(
+            one, replace(stood, quad_px=stood.quad_px + np.array([shift, 0]))
+        ).cut

@@ -70,6 +70,14 @@ def test_two_fronts_with_the_same_windows_are_told_apart() -> None:
         assert probability(found.support, alike) < 0.5
 
 
+def test_a_front_in_a_mirror_is_not_told_to_be_the_same() -> None:
+    image = front(1)
+    turned = whole(np.ascontiguousarray(image[:, ::-1]))
+    found = overlay(marks(whole(image)), marks(turned))
+    if found is not None:
+        assert likeness(whole(image), turned, found.matrix) < 0.1
+
+
 def test_what_no_camera_saw_bears_no_marks() -> None:
     image = front(3)
     known = np.zeros(image.shape, bool)
