@@ -48,6 +48,7 @@ from tests.data import DATA
 LOTS = 36  # of a block
 FRONT = Front("1-1-0", "1", "1", 0, 0, 0, "Elm Street", "1", 8.0, None, False)  # noqa: FBT003
 KIB = 1024
+NONE = "--shard=1/1000000"  # of the blocks: a run that starts, and has nothing to do
 
 
 def listed(store: Store, rows: int) -> None:
@@ -102,8 +103,8 @@ def photos(most: int) -> None:
     for count in sorted({max(most // 100, 12), max(most // 10, 12), most}):
         with tempfile.TemporaryDirectory() as folder:
             city = tiny.archive(Path(folder), count)
-            start = tiny.built(city, "--shard=1/1000000")  # of no block: it only starts
-            cost = tiny.built(city, "--direct_num_workers=2")
+            start = tiny.built(city, NONE, *of(2))
+            cost = tiny.built(city, *of(2))
             told = tiny.record(city)
         each = 1000 * (cost.cpu_s - start.cpu_s) / count
         first = first or each
@@ -123,7 +124,7 @@ def processes(count: int) -> None:
     for workers in (1, 2):
         with tempfile.TemporaryDirectory() as folder:
             city = tiny.archive(Path(folder), count)
-            start = tiny.built(city, "--shard=1/1000000", *of(workers))
+            start = tiny.built(city, NONE, *of(workers))
             cost = tiny.built(city, *of(workers))
         taken[workers] = cost.wall_s - start.wall_s, cost.wall_s, cost.cpu_s
         net, wall, cpu = taken[workers]
@@ -157,7 +158,7 @@ def overhead(count: int) -> None:
         own[1] = own[1].lstrip("0")
         where = ["index", f"{folder}/photos", "-o", str(city)]
         tiny.command([*where, *listed, *own, "-q"])
-        start = tiny.command(["build", str(city), "--shard=1/1000000"])
+        start = tiny.command(["build", str(city), NONE])
         cost = tiny.command(["build", str(city), "--max-rejected=1"])
         stages_s = tiny.record(city)["cpu_seconds"]
         worn = {

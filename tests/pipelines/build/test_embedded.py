@@ -53,7 +53,7 @@ def test_a_blank_in_the_interpreter_s_path_is_quoted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(sys, "executable", "/some folder/python")
-    assert embedded.command().startswith("'/some folder/python' -m ")
+    assert embedded.command().startswith("exec '/some folder/python' -m ")
 
 
 @pytest.fixture(scope="module")
