@@ -5,6 +5,6 @@ photographs. Out: `Borrowed`, the elevation with its holes filled as far as anot
 camera saw them, and which photograph each such texel comes from. Open `borrow` first.
 """
 
-from nostalgin_core.borrow.borrow import Borrowed, Fit, Lender, borrow, over
+from nostalgin_core.borrow.borrow import Borrowed, Lender, borrow, over
 
-__all__ = ["Borrowed", "Fit", "Lender", "borrow", "over"]
+__all__ = ["Borrowed", "Lender", "borrow", "over"]
