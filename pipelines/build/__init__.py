@@ -5,6 +5,7 @@ A stage of the core is a transform here; whom to tell, it is given. Open `city` 
 """
 
 import pipelines.build.lean  # noqa: F401 - before all that loads Beam
+from pipelines.build.attempt import CRASHED
 from pipelines.build.boards import boards, boards_read
 from pipelines.build.build import (
     Tell,
@@ -19,6 +20,7 @@ from pipelines.build.build import (
 from pipelines.build.cluster import Unrun
 from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.external import serve
+from pipelines.build.isolation import ASIDE
 from pipelines.build.options import CityOptions, options
 from pipelines.build.prepared import (
     DIRECTED,
@@ -36,6 +38,8 @@ from pipelines.build.streets import Streets
 from pipelines.build.took import Took
 
 __all__ = [
+    "ASIDE",
+    "CRASHED",
     "DIRECTED",
     "CityOptions",
     "Corrected",

@@ -7,21 +7,20 @@ the file before it.
 
 import hashlib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 
-from pipelines.build import Corrected
 from pipelines.index.asked import short
 from pipelines.index.roots import rooted
+from pipelines.reprocess.now import Now
 from pipelines.reprocess.published import Published
+from pipelines.reprocess.verdicts import STAGES
 from pipelines.store import Damaged, Shelf, Store
 from pipelines.store.versions import Versions
 
-STAGES: Final = ("segment", "matte", "rectify")  # of a photograph, in their order
-ORDER: Final = {stage: n for n, stage in enumerate(STAGES)} | {"photo": 0}
 SMALL: Final = "thumbnail"
 SLACK_NS: Final = 2_000_000_000  # by which clocks of machines and disks may differ
 Stamp = tuple[int, int]  # bytes, nanoseconds
@@ -84,19 +83,19 @@ def shelves(store: Store, versions: Versions, *, thorough: bool = False) -> Shel
 
 
 def fates(
+    now: Now,
     before: Published,
     asked: np.ndarray,
     kept: Shelves,
-    versions: Versions,
-    mended: Corrected,
+    reached: Mapping[int, int],
     *,
     thorough: bool = False,
 ) -> Iterator[Fate]:
     """Tell what became of each photograph that a run has read, part by part.
 
-    `asked` are the photographs that are asked for now.
+    `asked` are the photographs that are asked for now; of those whose rejection stands
+    `reached` tells how many stages they passed.
     """
-    reached = rejected(before)
     stamps = before.parts("stamps", "name", "root", "size", "mtime_ns")
     doubtful_ns = before.began_ns - SLACK_NS
     for photos in before.parts("photos", "name", "root", "sha256"):
@@ -113,10 +112,10 @@ def fates(
             known = told.get((root, name))
             sure = known == one and one[1] < doubtful_ns and not thorough
             if sure or hashed(root, name) == sha256:
-                same.append((fate, Content(sha256, *mended.drawn_on(name))))
+                same.append((fate, Content(sha256, *now.mended.drawn_on(name))))
             else:
                 yield fate._replace(cause="changed", since_ns=one[1])
-        yield from made(same, kept, versions, before.versions, reached)
+        yield from made(same, kept, now.versions, before.versions, reached)
 
 
 def stamped(table: pa.Table | None) -> dict[tuple[str, str], Stamp]:
@@ -158,27 +157,12 @@ def hashed(root: str, name: str) -> str:
         return ""
 
 
-def rejected(before: Published) -> dict[int, int]:
-    """Tell how many stages a photograph passed, of those that were rejected whole."""
-    reached: dict[int, int] = {}
-    for table in before.parts("rejections", "key", "stage", "facade"):
-        whole = table.filter(table.column("facade").is_null())
-        for key, stage in zip(
-            whole.column("key").to_pylist(),
-            whole.column("stage").to_pylist(),
-            strict=True,
-        ):
-            if stage in ORDER:
-                reached[short(key)] = ORDER[stage]
-    return reached
-
-
 def made(
     same: Sequence[tuple[Fate, Content]],
     kept: Shelves,
     versions: Versions,
     before: Versions | None,
-    reached: dict[int, int],
+    reached: Mapping[int, int],
 ) -> Iterator[Fate]:
     """Tell what is missing of what was made of photographs.
 

@@ -10,7 +10,7 @@ import pyarrow as pa
 from apache_beam.options.pipeline_options import DirectOptions, PipelineOptions
 
 from pipelines import build, index, site
-from pipelines.build import CityOptions, Prepared, Report, Tell, Watch
+from pipelines.build import CRASHED, CityOptions, Prepared, Report, Tell, Watch
 from pipelines.index import asked
 from pipelines.index.asked import Asked, short
 from pipelines.index.roots import rooted
@@ -63,11 +63,16 @@ def reprocess(
         if plan.nothing:
             return Reprocessed(plan)
         if healing(plan):
-            return Reprocessed(plan, healed(options, plan, tell, watch))
+            report = healed(options, plan, watch)
+            if not recovered(plan, report):
+                kept(tell)
+                return Reprocessed(plan, report)
         asked_for = prepared(plan, ours)
         ahead = plan.later and not plan.same_versions
         if ahead:
-            return Reprocessed(plan, made_ahead(options, asked_for, tell, watch))
+            report = made_ahead(options, asked_for, watch)
+            kept(tell)
+            return Reprocessed(plan, report)
         report = build.carried_out(options, asked_for, (1, 1), tell, watch)
         merged.drop(store, report.run)
         return Reprocessed(plan, report, shown=bool(report.blocks and not report.held))
@@ -84,15 +89,19 @@ def healing(plan: Plan) -> bool:
     )
 
 
-def healed(options: PipelineOptions, plan: Plan, tell: Tell, watch: Watch) -> Report:
+def recovered(plan: Plan, report: Report) -> bool:
+    """Tell whether something came through at which the published run had crashed."""
+    told = {short(one["key"]) for one in report.rejections if one["reason"] == CRASHED}
+    return bool(len(np.setdiff1d(plan.stale.crashed, np.array([*told], np.uint64))))
+
+
+def healed(options: PipelineOptions, plan: Plan, watch: Watch) -> Report:
     """Make what is missing of the published run."""
     asked_for = prepared(plan, options.view_as(CityOptions), run=plan.before.run)
-    return made_ahead(options, asked_for, tell, watch)
+    return made_ahead(options, asked_for, watch)
 
 
-def made_ahead(
-    options: PipelineOptions, asked_for: Prepared, tell: Tell, watch: Watch
-) -> Report:
+def made_ahead(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> Report:
     """Make artifacts that a later run finds, and publish nothing."""
     report = build.made_alone(options, asked_for, watch)
     store, run = asked_for.bench.store, asked_for.todo.run
@@ -101,8 +110,12 @@ def made_ahead(
     merged.drop(store, run)
     if not store.exists(f"runs/{run}/run.json"):  # none that was published
         drop_run(store, run)
-    tell("kept", "artifacts alone were made: the city that is shown stays")
     return report
+
+
+def kept(tell: Tell) -> None:
+    """Tell that no run was published."""
+    tell("kept", "artifacts alone were made: the city that is shown stays")
 
 
 def prepared(plan: Plan, ours: CityOptions, run: str = "") -> Prepared:

@@ -5,7 +5,7 @@ table and one group of rows, and no pixel is opened.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -17,8 +17,10 @@ from pipelines.reprocess.now import Now
 from pipelines.reprocess.photographs import Fate, Shelves, fates, fresh, shelves
 from pipelines.reprocess.published import Published
 from pipelines.reprocess.sides import Groups, Side
+from pipelines.reprocess.verdicts import Verdicts, verdicts
 
 CAUSES: Final = ("new", "changed", "removed", "missing", "version")  # of photographs
+NONE: Final = np.zeros(0, np.uint64)
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,7 @@ class Stale:
     moved: bool  # the city's places or title are others
     spoiled: list[str]  # paths of artifacts that are damaged
     photos_asked: int = 0
+    crashed: np.ndarray = field(default_factory=lambda: NONE)  # names and blocks
     before: Published = field(repr=False, default=None)  # type: ignore[assignment]
 
     def count(self, cause: str) -> int:
@@ -64,9 +67,14 @@ def stale(now: Now, before: Published, *, thorough: bool = False) -> Stale:
     if before.rows_sha256 != now.rows_sha256:
         earlier = sides.side(before.asked(), now.store.root, before.directed())
     kept = shelves(now.store, now.versions, thorough=thorough)
-    found = list_of(photographs(now, before, after, kept, thorough=thorough))
+    known = verdicts(before, now.versions)
+    found = list_of(photographs(now, before, after, kept, known, thorough=thorough))
+    again = np.array(sorted(known.again), np.uint64)
+    for name in np.intersect1d(again, after.names).tolist():
+        found.add(Fate(0, name, "missing"))
     blocks = {"rows": sides.differing(earlier.digests, after.digests)}
-    blocks |= unmade(now, before, kept, found)
+    both = earlier.digests.keys() & after.digests.keys()
+    blocks |= unmade(now, before, kept, found, both - known.refused)
     photos, causes, since_ns = found.arrays()
     unique = np.unique(after.ids)
     return Stale(
@@ -80,6 +88,7 @@ def stale(now: Now, before: Published, *, thorough: bool = False) -> Stale:
         moved(now, before),
         kept.spoiled,
         len(unique) - int(bool(len(unique)) and unique[0] == 0),
+        again,
         before,
     )
 
@@ -115,13 +124,19 @@ def list_of(found: Iterator[Fate]) -> Found:
 
 
 def photographs(
-    now: Now, before: Published, after: Side, kept: Shelves, *, thorough: bool
+    now: Now,
+    before: Published,
+    after: Side,
+    kept: Shelves,
+    known: Verdicts,
+    *,
+    thorough: bool,
 ) -> Iterator[Fate]:
     """Tell of the photographs that are stale."""
     asked = np.unique(after.ids)
     asked = asked[asked != 0]
     read = []
-    for one in fates(before, asked, kept, now.versions, now.mended, thorough=thorough):
+    for one in fates(now, before, asked, kept, known.reached, thorough=thorough):
         read.append(one.id)
         if one.cause:
             yield one
@@ -130,22 +145,21 @@ def photographs(
 
 
 def unmade(
-    now: Now, before: Published, kept: Shelves, found: Found
+    now: Now, before: Published, kept: Shelves, found: Found, wanted: Collection[int]
 ) -> dict[str, np.ndarray]:
     """List blocks whose models, or whose elevations, are missing or of other versions.
 
     A photograph whose finished elevation is missing, or what neighbours lent to it, is
-    stale; a block is, of which it is lost which facades look alike.
+    stale; a block is, of which it is lost which facades look alike. `wanted` are the
+    blocks that then were asked for as now, those apart whose rejection stands.
     """
-    names = [short(one) for one in block_names(before)]
-    mine = np.array(sorted(names), np.uint64)
-    none = np.zeros(0, np.uint64)
     if before.versions is None or before.versions != now.versions:
         worn = (len(e) for e in cells(before, "buildings", "elevations"))
         kept.made["inpaint"] += sum(worn) if renewed(now, before, "inpaint") else 0
-        blocks = mine if renewed(now, before, "block") else none
-        return {"version": blocks, "missing": none}
-    lost: list[int] = []
+        blocks = np.array(sorted(wanted), np.uint64)
+        blocks = blocks if renewed(now, before, "block") else NONE
+        return {"version": blocks, "missing": NONE}
+    lost = sorted({*wanted}.difference(map(short, block_names(before))))
     for table in before.parts("buildings", "photos", "elevations"):
         of, paths = (table.column(n).to_pylist() for n in range(2))
         pairs = [
@@ -164,7 +178,7 @@ def unmade(
     for name in lacked(before, kept, "borrow", ("borrowed", "name", "borrowed")):
         found.add(Fate(0, name, "missing"))
     lost += lacked(before, kept, "compare", ("blocks", "block", "compared"))
-    return {"version": none, "missing": np.array(sorted(lost), np.uint64)}
+    return {"version": NONE, "missing": np.array(sorted(lost), np.uint64)}
 
 
 def lacked(
