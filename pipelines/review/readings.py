@@ -31,7 +31,7 @@ class Reading:
     runner_up: str
     score: float | None  # of the likeliest key, 0 to 1
     remedy: str
-    crop: str  # a data URI; empty: there is none
+    crop: str  # the name of its board's picture; empty: there is none
 
     @property
     def open(self) -> bool:
@@ -47,10 +47,10 @@ def readings(store: Store) -> dict[str, Reading]:
     except (OSError, pa.ArrowException):
         return {}
     rows = table.to_pylist()
-    return {word(row, "photo"): reading(row, store) for row in rows}
+    return {word(row, "photo"): reading(row) for row in rows}
 
 
-def reading(row: Mapping[str, Any], store: Store) -> Reading:
+def reading(row: Mapping[str, Any]) -> Reading:
     """Read one row; what it lacks is empty."""
     put = pair(word(row, "joined_block"), word(row, "joined_lot"))
     read = pair(word(row, "read_block"), word(row, "read_lot"))
@@ -66,7 +66,7 @@ def reading(row: Mapping[str, Any], store: Store) -> Reading:
         runner_up=word(row, "runner_up"),
         score=float(score) if isinstance(score, (int, float)) else None,
         remedy=word(row, "remedy"),
-        crop=crop(word(row, "crop"), store),
+        crop=word(row, "crop"),
     )
 
 
@@ -76,7 +76,7 @@ def pair(block: str, lot: str) -> str:
 
 
 def crop(name: str, store: Store) -> str:
-    """Read the picture of a board, if it is one and lies in the city folder."""
+    """Give a board's picture as a data URI; empty: it is none of the city's."""
     if not name or not inside(name):
         return ""
     try:

@@ -20,7 +20,7 @@ from pipelines.index import manifest
 from pipelines.index.roots import located, rooted
 from pipelines.index.row import Row
 from pipelines.review.doubts import Told, told
-from pipelines.review.readings import Reading, readings
+from pipelines.review.readings import Reading, crop, readings
 from pipelines.store import Store
 from pipelines.store.versions import Versions
 
@@ -45,6 +45,7 @@ class Picture:
     lots: str  # block-lot that it shows now
     fronts: tuple[Front, ...]
     reading: Reading | None
+    crop: str  # of its board, a data URI; empty: there is none
     findings: tuple[Finding, ...]
     found: tuple[Found, ...]
 
@@ -161,6 +162,7 @@ def picture(
         lots=", ".join(dict.fromkeys(f"{one.block}-{one.lot}" for one in fronts)),
         fronts=fronts,
         reading=reading,
+        crop=crop(reading.crop, store) if reading else "",
         findings=tuple(one for row in rows for one in by_row.get(row.key, ())),
         found=found,
     )

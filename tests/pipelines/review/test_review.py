@@ -9,8 +9,10 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner, Result
 
+from pipelines import review
 from pipelines.cli import app
 from pipelines.corrections import shapes
+from pipelines.store import Store
 from tests.pipelines.cities import copied
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'</script><script>alert(2)</script>"
@@ -63,6 +65,33 @@ def test_a_crop_is_a_picture_within_the_city(other: Path, crop: str) -> None:
     (other.parent.parent / "secret.png").write_bytes(PNG)
     read(other, crop=crop)
     assert 'class="crop"' not in page(other)
+
+
+def test_crops_are_read_of_the_photographs_that_are_shown_alone(
+    other: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (other / "readings").mkdir()
+    names = ("5_1.png", "5_2.jpg")
+    for name in names:
+        (other / "readings" / f"{name}.png").write_bytes(PNG)
+    rows = [
+        {"photo": name, "verdict": "contradicted", "crop": f"readings/{name}.png"}
+        for name in names
+    ]
+    pq.write_table(pa.Table.from_pylist(rows), other / "readings.parquet")
+    asked: list[str] = []
+    read_bytes = Store.read_bytes
+
+    def noted(store: Store, name: str, *most: int) -> bytes:
+        asked.append(name)
+        return read_bytes(store, name, *most)
+
+    monkeypatch.setattr(Store, "read_bytes", noted)
+    found = review.review(Store(str(other)), most=1)
+    assert found.verdicts == {"contradicted": 2}
+    assert [one for one in asked if one.startswith("readings/")] == [
+        f"readings/{one.name}.png" for one in found.pictures
+    ]
 
 
 def test_a_table_that_is_none_is_taken_for_none(other: Path) -> None:
