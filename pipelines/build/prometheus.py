@@ -1,7 +1,8 @@
 """What a run came to, as text for Prometheus: one file for its textfile collector.
 
-OpenMetrics 1.0, written by Prometheus's own library from what run.json tells. The
-counters are of one run, and begin anew with the next: their `_created` times tell so.
+The collector reads the text format 0.0.4 alone, to which OpenMetrics' counters have no
+type; Prometheus's own library writes it from what run.json tells. The counters are of
+one run, and begin anew with the next: their `_created` times tell so.
 """
 
 import time
@@ -9,14 +10,13 @@ from calendar import timegm
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from prometheus_client import CollectorRegistry
+from prometheus_client import CollectorRegistry, generate_latest
 from prometheus_client.core import (
     CounterMetricFamily,
     GaugeMetricFamily,
     HistogramMetricFamily,
     Metric,
 )
-from prometheus_client.openmetrics.exposition import generate_latest
 
 from pipelines.build.took import EDGES_MS, Took, up_to
 from pipelines.store import Store
@@ -47,7 +47,7 @@ def write(store: Store, told: Told, shard: str, *, succeeded: Told) -> None:
 
 
 def text(told: Told, city: str, shard: str, *, succeeded: Told) -> bytes:
-    """Write a run's metrics as OpenMetrics."""
+    """Write a run's metrics in Prometheus's text format 0.0.4."""
     registry = CollectorRegistry()
     registry.register(Collected(list(metrics(told, city, shard, succeeded))))
     return generate_latest(registry)

@@ -7,7 +7,7 @@ from time import strptime
 from typing import Any
 
 import pytest
-from prometheus_client.openmetrics.parser import text_string_to_metric_families
+from prometheus_client.parser import text_string_to_metric_families
 
 from pipelines.build import prometheus
 from tests.pipelines.cities import built, copied
@@ -16,7 +16,7 @@ Samples = dict[tuple[str, str, str], float]  # name, stage or process, bound
 
 
 def samples(text: str) -> Samples:
-    """Parse a file of OpenMetrics."""
+    """Parse a file of the text format 0.0.4."""
     return {
         (
             one.name,
@@ -31,6 +31,19 @@ def samples(text: str) -> Samples:
 def record(city: Path) -> dict[str, Any]:
     run = (city / "CURRENT").read_text().strip()
     return json.loads((city / "runs" / run / "run.json").read_text())
+
+
+def test_each_family_has_the_type_that_a_textfile_collector_reads() -> None:
+    stage = {"made": 4, "milliseconds": 9, "longest_ms": 9}
+    told = {"seconds": 1.0, "stages": {"matte": stage}, "memory_mb": {"driver": 1}}
+    text = prometheus.text(told, "city", "", succeeded={}).decode()
+    types = {f.name: f.type for f in text_string_to_metric_families(text)}
+    for word in prometheus.COUNTERS:
+        assert types[f"nostalgin_{word}"] == "counter"
+    assert types["nostalgin_stage_seconds"] == "histogram"
+    assert types["nostalgin_run_seconds"] == "gauge"
+    assert "unknown" not in types.values()
+    assert "# EOF" not in text
 
 
 @pytest.fixture(scope="module")
