@@ -5,6 +5,7 @@ a doubt its bytes are hashed: the time is another, or so late that the run may h
 the file before it.
 """
 
+import errno
 import hashlib
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,11 +15,13 @@ import numpy as np
 import pyarrow as pa
 
 from pipelines.index.asked import short
+from pipelines.index.manifest import Unusable
 from pipelines.index.roots import rooted
 from pipelines.reprocess.now import Now
 from pipelines.reprocess.published import Published
 from pipelines.reprocess.verdicts import STAGES
 from pipelines.store import Damaged, Shelf, Store
+from pipelines.store.disk import absent
 from pipelines.store.versions import Versions
 
 SMALL: Final = "thumbnail"
@@ -101,8 +104,8 @@ def fates(
     for photos in before.parts("photos", "name", "root", "sha256"):
         told = stamped(next(stamps, None))
         rows = list(zip(*(photos.column(n).to_pylist() for n in range(3)), strict=True))
-        there = present(rows)
         still = np.isin(np.array([short(r, n) for n, r, _ in rows], np.uint64), asked)
+        there = present(rows, still)
         same: list[tuple[Fate, Content]] = []
         for (name, root, sha256), one, wanted in zip(rows, there, still, strict=True):
             fate = Fate(short(root, name), short(name), "")
@@ -128,11 +131,14 @@ def stamped(table: pa.Table | None) -> dict[tuple[str, str], Stamp]:
     )
 
 
-def present(rows: Sequence[tuple[str, str, str]]) -> list[Stamp | None]:
-    """Look at the files of photographs, all of one root at once."""
+def present(
+    rows: Sequence[tuple[str, str, str]], wanted: np.ndarray | None = None
+) -> list[Stamp | None]:
+    """Look at the files of photographs, or of those wanted, a root's at once."""
     by_root: dict[str, list[int]] = defaultdict(list)
     for at, (_, root, _) in enumerate(rows):
-        by_root[root].append(at)
+        if wanted is None or wanted[at]:
+            by_root[root].append(at)
     found: list[Stamp | None] = [None] * len(rows)
     for root, places in by_root.items():
         stamps = stamps_of(root, [rows[at][0] for at in places])
@@ -141,20 +147,48 @@ def present(rows: Sequence[tuple[str, str, str]]) -> list[Stamp | None]:
     return found
 
 
+class Unreached(Unusable):
+    """Photographs that nobody can look at now: they are not gone for that."""
+
+    def __init__(self, root: str, problem: OSError) -> None:
+        """Say whose, and what to do."""
+        why = problem.strerror or str(problem)
+        super().__init__(
+            f"{root} can't be reached: {why}; the city stays: mend network, disk or "
+            "rights, and run it again, or take its rows out of the manifest"
+        )
+
+
 def stamps_of(root: str, names: Sequence[str]) -> list[Stamp | None]:
-    """Look at files below a root; one that can't be reached has none."""
+    """Look at files below a root; one that is not there has none.
+
+    Raises:
+        Unreached: if nobody can look.
+    """
     try:
         return Store(root).stamps(names)
-    except (OSError, ValueError):
+    except ValueError:
         return [None] * len(names)
+    except OSError as problem:
+        if absent(problem):
+            return [None] * len(names)
+        raise Unreached(root, problem) from problem
 
 
 def hashed(root: str, name: str) -> str:
-    """Hash a photograph's bytes; "" where they can't be read."""
+    """Hash a photograph's bytes; "" if there are none, or more than are read.
+
+    Raises:
+        Unreached: if nobody can look.
+    """
     try:
         return hashlib.sha256(Store(root).read_bytes(name)).hexdigest()
-    except (OSError, ValueError):
+    except ValueError:
         return ""
+    except OSError as problem:
+        if absent(problem) or problem.errno == errno.EFBIG:
+            return ""
+        raise Unreached(root, problem) from problem
 
 
 def made(

@@ -1,5 +1,6 @@
 """Where a store lies: file systems, and names that they take."""
 
+import errno
 import functools
 import os
 from pathlib import Path
@@ -11,6 +12,14 @@ SECRETIVE: Final = (
     "Credentials in the URI, which logs and tables would show: give them by the "
     "environment, or by a file of the cloud's own tools"
 )
+NOWHERE: Final = frozenset(
+    (errno.ENOENT, errno.ENOTDIR, errno.ENAMETOOLONG, errno.ELOOP, errno.EILSEQ)
+)
+
+
+def absent(problem: OSError | ValueError) -> bool:
+    """Tell whether a name leads to nothing; else nobody could look what is there."""
+    return isinstance(problem, ValueError) or problem.errno in NOWHERE
 
 
 def textual(name: str) -> bool:

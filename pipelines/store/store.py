@@ -27,7 +27,7 @@ import pyarrow.parquet as pq
 from nostalgin_core.records import Rejection
 from pipelines import bounded
 from pipelines.store import seal, tables
-from pipelines.store.disk import SECRETIVE, durable, reached, secretive, textual
+from pipelines.store.disk import SECRETIVE, absent, durable, reached, secretive, textual
 from pipelines.store.seal import Damaged
 from pipelines.store.shelf import ARTIFACT, Place, Shelf, shelf
 
@@ -84,15 +84,17 @@ class Store:
     def stamps(self, names: Sequence[str]) -> list[tuple[int, int] | None]:
         """Tell the sizes of files and when they were changed, in nanoseconds.
 
-        None of what is no file, or has a name that none can have.
+        None of what is no file; an OSError if nobody can look, as without a network.
         """
         system, root = self._open()
         paths = [f"{root}/{name}" for name in names]
         try:
             told = system.get_file_info(paths)
-        except (OSError, ValueError):  # one spoils all: ask for each by itself
+        except (OSError, ValueError) as problem:  # one spoils all: ask for each
             if len(names) == 1:
-                return [None]
+                if absent(problem):
+                    return [None]
+                raise
             return [stamp for name in names for stamp in self.stamps([name])]
         return [(one.size, one.mtime_ns) if one.is_file else None for one in told]
 

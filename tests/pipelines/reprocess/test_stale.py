@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from pipelines.index.manifest import Unusable
 from pipelines.reprocess import Plan
 from pipelines.store import packing, versions
 from pipelines.store.store import Store
@@ -112,6 +113,25 @@ def test_what_changed_is_found_and_touches_its_block_alone(
 def test_a_file_that_was_only_touched_is_not_stale(city: Path) -> None:
     os.utime(city.parent / "photos/6_1.png")
     assert planned(city).nothing
+
+
+@pytest.mark.parametrize("asked", ["stamps", "read_bytes"])
+def test_a_root_that_can_not_be_reached_ends_the_plan(
+    city: Path, monkeypatch: pytest.MonkeyPatch, asked: str
+) -> None:
+    os.utime(city.parent / "photos/6_1.png")
+    before = tree(city)
+    work = getattr(Store, asked)
+
+    def broken(store: Store, told: object, *more: int) -> object:
+        if store.root.endswith("photos"):
+            raise OSError("curlCode: 7, Couldn't connect to server")
+        return work(store, told, *more)
+
+    monkeypatch.setattr(Store, asked, broken)
+    with pytest.raises(Unusable, match=r"photos can't be reached: .*run it again"):
+        planned(city)
+    assert tree(city) == before
 
 
 def test_other_bytes_of_the_same_size_and_time_are_found_by_hashing(city: Path) -> None:
