@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from pipelines import stopping
-from pipelines.cli.launch import City, JsonLines, ModelsFolder
+from pipelines.cli.launch import TOO_MANY_REJECTIONS, City, JsonLines, ModelsFolder
 from pipelines.cli.reprocess import redone
-from pipelines.console import Quiet, Voice, errors
+from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 if TYPE_CHECKING:
-    from pipelines.schedule import Record
+    from pipelines.schedule import Record, Schedule
+    from pipelines.store import Store
 
 EXAMPLES: Final = """
 Examples:
@@ -76,6 +77,7 @@ def schedule_command(
     from pipelines import schedule
     from pipelines.store import Store
 
+    insisted(Store(city))
     voice = Voice(errors, machine=json_lines, quiet=quiet)
     outcomes: list[int] = []
     given = (city, voice, str(models or ""), context.args)
@@ -86,19 +88,53 @@ def schedule_command(
         schedule.ticks_between(cron, zone, clock.now(), clock.now())
     except schedule.NoCron as problem:
         raise typer.BadParameter(str(problem)) from problem
-    with stopping.heeded(clock.end):
-        if once:
-            schedule.run_due(timed, clock, work, None)
-        else:
-            schedule.run_on(timed, clock, work)
+    try:
+        with stopping.heeded(clock.end):
+            if not once:
+                schedule.run_on(timed, clock, work)
+            elif not schedule.run_due(timed, clock, work, None):
+                waited(timed, clock.now(), voice)
+    except OSError as problem:
+        raise unwritable(city, problem) from problem
     if once or stopping.CODE in outcomes[-1:]:
         raise typer.Exit(outcomes[-1] if outcomes else 0)
+
+
+def insisted(store: "Store") -> None:
+    """Insist on a city that there is something to do in, before a file is written.
+
+    Raises:
+        Exit: if there is no manifest.
+    """
+    from pipelines.index.row import CSV
+    from pipelines.index.source import PARQUET
+
+    try:
+        there = any(store.exists(name) for name in (CSV, PARQUET))
+    except OSError as problem:
+        raise unwritable(store.root, problem) from problem
+    if not there:
+        raise fail(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
+
+
+def waited(schedule: "Schedule", now: datetime, voice: Voice) -> None:
+    """Tell when something is due next, where nothing is."""
+    from pipelines.schedule import following
+
+    when = following(schedule, now).isoformat(timespec="minutes")
+    voice.say("next", f"nothing is due: the next time is {when}", next=when)
 
 
 def reprocessed(
     given: tuple[str, Voice, str, list[str]], budget: int, outcomes: list[int]
 ) -> "Record":
-    """Reprocess once, add its exit code to `outcomes`, and record what came of it."""
+    """Reprocess once, add its exit code to `outcomes`, and record what came of it.
+
+    Whatever a run ends with is recorded here, so that the next time goes on.
+
+    Raises:
+        BadParameter: if its options make no sense: no later time could do better.
+    """
     from pipelines.schedule import Record
 
     try:
@@ -106,11 +142,26 @@ def reprocessed(
     except typer.Exit as problem:
         outcomes.append(problem.exit_code)
         words = str(problem.__cause__ or f"exit code {problem.exit_code}")
-        stopped = problem.exit_code == stopping.CODE
-        outcome = "stopped" if stopped else "failed"
-        return Record("", "", "", outcome, detail=words[:MOST_WORDS])
-    outcomes.append(0)
-    outcome = "nothing" if done.report is None else "done"
+        return Record("", "", "", ended(problem), detail=words[:MOST_WORDS])
+    except typer.BadParameter:
+        raise
+    except Exception as problem:  # noqa: BLE001 - the next time goes on
+        words = f"{type(problem).__name__}: {problem}"
+        outcomes.append(fail(words).exit_code)
+        return Record("", "", "", "failed", detail=words[:MOST_WORDS])
+    report = done.report
+    held = report is not None and report.held
+    outcomes.append(TOO_MANY_REJECTIONS if held else 0)
+    outcome = "held" if held else "nothing" if report is None else "done"
     photos, later = done.plan.photos, done.plan.later
-    run = done.report.run if done.report is not None else ""
+    run = report.run if report is not None else ""
     return Record("", "", "", outcome, photos=photos, later=later, run=run)
+
+
+def ended(problem: typer.Exit) -> str:
+    """Tell in a word what a run ended with that told so itself."""
+    from pipelines.store import Busy
+
+    if isinstance(problem.__cause__, Busy):
+        return "busy"
+    return "stopped" if problem.exit_code == stopping.CODE else "failed"

@@ -5,7 +5,7 @@ Open `ticks` first, then `schedule`.
 """
 
 from pipelines.schedule.record import Record, recorded
-from pipelines.schedule.schedule import Schedule, run_due, run_on
+from pipelines.schedule.schedule import Schedule, following, run_due, run_on
 from pipelines.schedule.state import State, state
 from pipelines.schedule.ticks import NoCron, ticks_between
 
@@ -14,6 +14,7 @@ __all__ = [
     "Record",
     "Schedule",
     "State",
+    "following",
     "recorded",
     "run_due",
     "run_on",

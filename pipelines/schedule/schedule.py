@@ -52,6 +52,18 @@ class Schedule:
         return [tick for tick in ticks if tick + self.delay(tick) <= now]
 
 
+def following(schedule: Schedule, since: datetime) -> datetime:
+    """Tell when something is due next: after the last record, or since a time.
+
+    Raises:
+        NoCron: if the expression names no times, or there is no such zone.
+    """
+    before = recorded(schedule.store)
+    last = before[-1].when if before else since
+    tick = next(ticks_after(schedule.cron, schedule.zone, last))
+    return tick + schedule.delay(tick)
+
+
 def run_due(
     schedule: Schedule, clock: Clock, work: Work, since: datetime | None
 ) -> bool:
@@ -86,8 +98,5 @@ def run_on(schedule: Schedule, clock: Clock, work: Work) -> None:
     while not clock.stopped():
         if run_due(schedule, clock, work, since):
             continue
-        before = recorded(schedule.store)
-        last = before[-1].when if before else since
-        following = next(ticks_after(schedule.cron, schedule.zone, last))
-        wait = following + schedule.delay(following) - clock.now()
+        wait = following(schedule, since) - clock.now()
         clock.sleep(min(max(wait.total_seconds(), 0.0), NAP_S))
