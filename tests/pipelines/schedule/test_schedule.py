@@ -133,6 +133,30 @@ def test_what_is_no_cron_expression_is_told(cron: str, zone: str) -> None:
         ticks_between(cron, zone, NOON, NOON + DAY)
 
 
-def test_a_spoiled_record_tells_of_none(tmp_path: Path) -> None:
-    (tmp_path / "schedule.json").write_text('[{"tick": 3}]')
-    assert recorded(Store(str(tmp_path))) == []
+@pytest.mark.parametrize(
+    "spoiled", ['[{"tick": 3}]', "[", "{}", '[{"tick": "soon"}]', "[" * 100_000]
+)
+def test_a_spoiled_record_tells_of_none_and_is_put_aside(
+    tmp_path: Path, spoiled: str
+) -> None:
+    (tmp_path / "schedule.json").write_text(spoiled)
+    schedule = scheduled(tmp_path)
+    assert recorded(schedule.store) == []
+    assert run_due(schedule, Painted(NOON, NOON), worked, None)
+    assert ticks(schedule) == [NOON]
+    assert (tmp_path / "schedule.json.spoiled").read_text() == spoiled
+
+
+def test_what_a_later_release_adds_to_a_record_does_no_harm(tmp_path: Path) -> None:
+    schedule, clock = scheduled(tmp_path), Painted(NOON, NOON)
+    run_due(schedule, clock, worked, None)
+    path = tmp_path / "schedule.json"
+    path.write_text(path.read_text().replace('"tick"', '"mood": "good", "tick"'))
+    assert ticks(schedule) == [NOON]
+    assert not run_due(schedule, clock, worked, None)
+
+
+def test_what_can_not_be_read_is_not_taken_for_none(tmp_path: Path) -> None:
+    (tmp_path / "schedule.json").mkdir()
+    with pytest.raises(IsADirectoryError):
+        recorded(Store(str(tmp_path)))
