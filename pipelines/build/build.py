@@ -11,7 +11,7 @@ import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions
 
 from pipelines import site, stopping
-from pipelines.build import cluster, rows
+from pipelines.build import cluster, rows, twin
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
 from pipelines.build.embedded import in_process
@@ -22,6 +22,7 @@ from pipelines.build.options import CityOptions, part
 from pipelines.build.prepared import Prepared, prepared
 from pipelines.build.report import (
     Lost,
+    Rejections,
     Report,
     check,
     last_shown,
@@ -36,6 +37,7 @@ from pipelines.index.asked import Asked
 from pipelines.index.row import Row
 from pipelines.models import one_thread
 from pipelines.store import Damaged, Store, held, runs
+from pipelines.store.refuse import drop_run
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
 LEAST_SHOWN: Final = 0.5  # of the photos: a city that shows more is never held back
@@ -135,6 +137,7 @@ def carried_out(
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
         report = replace(report, cpu_seconds=told["cpu_seconds"])
+        report = recognised(asked_for, report)
         if shard != (1, 1) or not report.blocks:
             metered(store, told, ours.shard)
             return report
@@ -142,15 +145,26 @@ def carried_out(
             anyway = ours.publish_anyway
             shown = published(asked_for, report, tell, anyway=anyway)
         except Damaged:
-            spoiled = site.damaged(store, run, bench.versions)
+            spoiled = site.damaged(store, report.run, bench.versions)
             for path in spoiled:
                 store.drop(path)
             again += len(spoiled)
         else:
+            if shown.run != run:
+                drop_run(store, run)
             tidied(options, store, bench.versions)
             metered(store, told, ours.shard)
             return shown
     raise Lost(f"{store.root}: what is written there is damaged: mend its disk")
+
+
+def recognised(asked_for: Prepared, report: Report) -> Report:
+    """Take a run that came to what is shown for the one that is shown."""
+    store, first = asked_for.bench.store, asked_for.first
+    shown = twin.same_as_shown(store, first, report.run) if first else ""
+    if not shown:
+        return report
+    return replace(report, run=shown, rejections=Rejections(store, shown))
 
 
 def made_alone(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> Report:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from pipelines import index, site
+from pipelines.build import twin
 from pipelines.build.bench import Bench
 from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.isolation import Limits
@@ -37,6 +38,7 @@ class Prepared:
     settle: Callable[[], None] = lambda: None  # puts what was not redone beside it
     trusting: bool = False  # that what stands in the site is what we wrote there
     expected: Mapping[str, Any] = field(default_factory=dict)  # what it was to cost
+    first: str = ""  # the name of the first run over the same, of a whole run
 
     @property
     def work(self) -> Asked:
@@ -62,7 +64,8 @@ def prepared(ours: CityOptions, store: Store, shard: Shard, warn: Warn) -> Prepa
     if shard == (1, 1):
         site.claim(store)  # whose folder it is, too, is told now
     sources = sources_of(there, mended, anchors)
-    run = runs.run_id(sources, bench.versions, words_of(ours))
+    first = runs.run_id(sources, bench.versions, words_of(ours))
+    run = twin.unshown(store, first)
     own = {"schemes": schemes_of(ours), "shard": shard, "warn": warn}
     todo = ask(store, there, run, results=mended.rows, **own)
     if shard == (1, 1) and not todo.blocks:
@@ -71,7 +74,7 @@ def prepared(ours: CityOptions, store: Store, shard: Shard, warn: Warn) -> Prepa
         raise Unusable(nothing(store, todo))
     direct(store, run, mended)
     told_of = told_of_run(there, mended, anchors, schemes_of(ours))
-    return Prepared(bench, todo, mended, anchors, told_of)
+    return Prepared(bench, todo, mended, anchors, told_of, first=first)
 
 
 def told_of_run(

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from pipelines import build
 from pipelines.build import Report
-from pipelines.index import manifest, readings
+
+OF_BUILDS = ("CURRENT", "metrics.prom", ".lock")  # all else beside them is index's
 
 
 def built(city: Path, beam: Sequence[str] = (), shard: str = "") -> Report:
@@ -36,6 +37,7 @@ def copied(city: Path, folder: Path) -> Path:
     shutil.copytree(city.parent / "models", folder / "models")
     fresh = folder / "city"
     fresh.mkdir()
-    for name in (manifest.CSV, manifest.PARQUET, readings.TABLE):
-        shutil.copy(city / name, fresh / name)
+    for path in city.iterdir():
+        if path.is_file() and path.name not in OF_BUILDS:
+            shutil.copy(path, fresh / path.name)
     return fresh
