@@ -90,10 +90,11 @@ def borrow(own: Elevation, lenders: Sequence[Lender]) -> Borrowed:
     fits, laid = [], []
     for one in lenders:
         seen = View(one.view.image, one.view.evidence == evidence.PHOTOGRAPHED)
-        rough = views.overlay(here, views.marks(seen))
+        there = views.marks(seen)
+        rough = views.overlay(here, there)
         exact = None if rough is None else aligned(known, seen, rough.matrix)
         fit, over = _laid(one, known, seen, exact, wanted)
-        if fit.likeness < LEAST_LIT and mirrored(known, here, seen):
+        if fit.likeness < LEAST_LIT and mirrored(known, here, seen, there):
             fit = replace(fit, why=MIRRORED)
         fits.append(fit)
         laid.append(over)
@@ -122,10 +123,10 @@ def over(own: Elevation, other: Elevation) -> View | None:
     return None if exact is None else warped(seen, exact.matrix, own.image.shape)
 
 
-def mirrored(own: View, marks: Marks, seen: View) -> bool:
-    """Tell whether an elevation fits another one, of these `marks`, in a mirror."""
+def mirrored(own: View, here: Marks, seen: View, there: Marks) -> bool:
+    """Tell whether an elevation fits another one in a mirror, given both's marks."""
     turned = View(*(np.ascontiguousarray(one[:, ::-1]) for one in seen))
-    rough = views.overlay(marks, views.marks(turned))
+    rough = views.overlay(here, views.turned(there))
     exact = None if rough is None else aligned(own, turned, rough.matrix)
     if exact is None:
         return False

@@ -13,6 +13,7 @@ SMOOTH_PX: Final = 6.0  # over which the worth of views is compared
 FEATHER_PX: Final = 6.0  # inside what is filled: its tone runs over to the own
 REACH_PX: Final = 24
 RIVAL: Final = 0.75  # of the best view's worth, to lie beside it at a seam
+AROUND_PX: Final = 12  # of a region that is parted: what it borders on
 LEAST_SMALL: Final = 12  # texels: what is smaller is left to the inpainter
 
 Map = Float32[np.ndarray, "h w"]
@@ -61,12 +62,31 @@ def chosen(worths: Sequence[Map], images: Sequence[Map]) -> UInt8[np.ndarray, "h
 
 
 def cut(images: Sequence[Map], masks: Sequence[Mask]) -> list[Mask]:
-    """Part views that lie over each other along seams where they look alike."""
-    given = [cv2.merge([image] * 3) for image in images]
-    parts = [mask.astype(np.uint8) * 255 for mask in masks]
+    """Part views that lie over each other along seams where they look alike.
+
+    Only where several lie is there anything to part.
+    """
+    several = np.sum(masks, axis=0) > 1
+    if not several.any():
+        return list(masks)
+    here = around(several, AROUND_PX)
+    given = [cv2.merge([image[here]] * 3) for image in images]
+    parts = [mask[here].astype(np.uint8) * 255 for mask in masks]
     finder: Any = cv2.detail.GraphCutSeamFinder("COST_COLOR")  # its stub knows no array
     found = finder.find(given, [(0, 0)] * len(given), parts)
-    return [(one.get() if isinstance(one, cv2.UMat) else one) > 0 for one in found]
+    parted = [mask.copy() for mask in masks]
+    for mask, one in zip(parted, found, strict=True):
+        mask[here] = (one.get() if isinstance(one, cv2.UMat) else one) > 0
+    return parted
+
+
+def around(mask: Mask, margin_px: int) -> tuple[slice, slice]:
+    """Cut out what is true of a mask, with a margin."""
+    rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
+    return (
+        slice(max(0, int(rows[0]) - margin_px), int(rows[-1]) + 1 + margin_px),
+        slice(max(0, int(columns[0]) - margin_px), int(columns[-1]) + 1 + margin_px),
+    )
 
 
 def joined(image: Map, filled: Map, own: Mask, patch: Mask) -> Map:

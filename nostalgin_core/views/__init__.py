@@ -10,7 +10,7 @@ from nostalgin_core.views.agreement import Alike
 from nostalgin_core.views.claims import Claim, claimed
 from nostalgin_core.views.compare import compared
 from nostalgin_core.views.likeness import likeness, probability
-from nostalgin_core.views.marks import Marks, View, marks, seen_on
+from nostalgin_core.views.marks import Marks, View, marks, seen_on, turned
 from nostalgin_core.views.overlay import overlay
 from nostalgin_core.views.stretch import Stretch, stretch
 
@@ -28,4 +28,5 @@ __all__ = [
     "probability",
     "seen_on",
     "stretch",
+    "turned",
 ]

@@ -66,3 +66,14 @@ def marks(view: View) -> Marks:
     places = np.array([one.pt for one in found], np.float32).reshape(-1, 2)
     sizes = np.array([one.size for one in found], np.float32)
     return Marks(places / scale, sizes / scale, np.sqrt(looks / sums), image.shape)
+
+
+def turned(found: Marks) -> Marks:
+    """Give the marks that an elevation would bear in a mirror.
+
+    A histogram has 4 rows and 4 columns of 8 directions: the columns change places, and
+    so do left and right.
+    """
+    looks = found.looks.reshape(-1, 4, 4, 8)[:, :, ::-1, (4 - np.arange(8)) % 8]
+    at_px = found.at_px * np.float32([-1, 1]) + np.float32([found.shape[1] - 1, 0])
+    return Marks(at_px, found.size_px, looks.reshape(-1, 128), found.shape)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from nostalgin_core.views import View, likeness, marks, overlay, probability
+from nostalgin_core.views import View, likeness, marks, overlay, probability, turned
 
 
 def front(seed: int, shape: tuple[int, int] = (420, 300)) -> np.ndarray:
@@ -72,10 +72,23 @@ def test_two_fronts_with_the_same_windows_are_told_apart() -> None:
 
 def test_a_front_in_a_mirror_is_not_told_to_be_the_same() -> None:
     image = front(1)
-    turned = whole(np.ascontiguousarray(image[:, ::-1]))
-    found = overlay(marks(whole(image)), marks(turned))
+    mirror = whole(np.ascontiguousarray(image[:, ::-1]))
+    found = overlay(marks(whole(image)), marks(mirror))
     if found is not None:
-        assert likeness(whole(image), turned, found.matrix) < 0.1
+        assert likeness(whole(image), mirror, found.matrix) < 0.1
+
+
+def test_marks_turned_round_are_those_in_a_mirror() -> None:
+    image = front(1)
+    mirror = marks(whole(np.ascontiguousarray(image[:, ::-1])))
+    found = overlay(turned(marks(whole(image))), mirror)
+    assert found is not None
+    np.testing.assert_allclose(found.matrix, np.eye(3), atol=1.5)
+    like = turned(marks(whole(image))).looks @ mirror.looks.T
+    assert np.median(like.max(axis=1)) > 0.95
+    again = turned(turned(mirror))
+    np.testing.assert_array_equal(again.looks, mirror.looks)
+    np.testing.assert_allclose(again.at_px, mirror.at_px, atol=1e-3)
 
 
 def test_what_no_camera_saw_bears_no_marks() -> None:
