@@ -75,5 +75,6 @@ def turned(found: Marks) -> Marks:
     so do left and right.
     """
     looks = found.looks.reshape(-1, 4, 4, 8)[:, :, ::-1, (4 - np.arange(8)) % 8]
-    at_px = found.at_px * np.float32([-1, 1]) + np.float32([found.shape[1] - 1, 0])
+    at_px = found.at_px * np.array([-1, 1], np.float32)
+    at_px += np.array([found.shape[1] - 1, 0], np.float32)
     return Marks(at_px, found.size_px, looks.reshape(-1, 128), found.shape)
