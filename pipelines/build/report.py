@@ -26,6 +26,7 @@ MADE: Final = (  # which column of which table names the artifacts of which stag
     ("facades", "elevations", "rectify"),
     ("borrowed", "borrowed", "borrow"),
     ("buildings", "elevations", "inpaint"),
+    ("blocks", "compared", "compare"),
     ("blocks", "model", "block"),
 )
 
