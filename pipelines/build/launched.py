@@ -4,6 +4,7 @@ What ends a run is told in words: a worker that was killed, a folder that takes 
 """
 
 import copy
+import errno
 import re
 from collections.abc import Callable
 from typing import Final
@@ -17,10 +18,13 @@ from pipelines.build import cluster, embedded
 from pipelines.build.report import Lost
 from pipelines.store import Store, Unstored
 
+# Of a disk that is full or may not be written to, or a file in a folder's place.
+FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+BARRED: Final = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR)
 # As a worker's traceback has it; a run's tables are written without `keep`.
 UNWRITTEN: Final = (
     rf"{Unstored.__name__}: (.*)",
-    r"(?:OS|Permission|[A-Z]\w+Directory)Error: (.*)",
+    rf"\w+Error: (\[Errno (?:{'|'.join(map(str, (*FULL, *BARRED)))})\].*)",
 )
 
 
@@ -70,12 +74,17 @@ def ran(
     except Unstored as problem:
         raise Lost(unstored(store, str(problem))) from problem
     except RuntimeError as problem:  # a worker's exception reaches us as its traceback
-        lines = (re.search(pattern, str(problem)) for pattern in UNWRITTEN)
-        told = next((one for one in lines if one is not None), None)
-        if told is None:
+        why = unwritten(str(problem))
+        if not why:
             raise
-        raise Lost(unstored(store, told[1])) from problem
+        raise Lost(unstored(store, why)) from problem
     return result
+
+
+def unwritten(traceback: str) -> str:
+    """Tell of a worker's traceback what could not be written; empty: it tells none."""
+    lines = (re.search(pattern, traceback) for pattern in UNWRITTEN)
+    return next((one[1] for one in lines if one is not None), "")
 
 
 def unstored(store: Store, why: str) -> str:
