@@ -26,7 +26,7 @@ PEAK: Final = 0.6  # correlation
 NEAR_PX: Final = 1.5  # of the fitted homography, to agree with it
 FEWEST: Final = 12  # patches that agree
 LEAST_SHARE: Final = 0.35  # of those that were found
-WIDEST: Final = 0.06  # of the longer side: a correction beyond is no correction
+WIDEST: Final = 0.06  # of the longer side: corrections beyond are no correction
 
 Band = tuple[Points, Points]
 
@@ -46,17 +46,18 @@ def aligned(own: View, other: View, matrix: Matrix3) -> Aligned | None:
     scale = min(1.0, LONGEST_PX / max(own.image.shape))
     small = shrunk(own, scale)
     full_from_small = np.diag([1 / scale, 1 / scale, 1.0])
-    found = None
+    whole = np.eye(3)  # all corrections so far
     for reach in REACHES_PX:
         there = warped(other, matrix @ full_from_small, small.image.shape)
         here, lies = sought(small, there, reach)
         found = fitted(here, lies)
-        if found is None or found[0] is None:
+        if found is None:
             return None
         correction, agree = found
+        whole = whole @ correction
         matrix = matrix @ full_from_small @ correction @ np.linalg.inv(full_from_small)
         matrix = matrix / matrix[2, 2]
-    if moved(correction, small.image.shape) > WIDEST * max(small.image.shape):
+    if moved(whole, small.image.shape) > WIDEST * max(small.image.shape):
         return None
     gap = cv2.perspectiveTransform(here[None], correction)[0] - lies
     off = np.linalg.norm(gap, axis=1)[agree]
