@@ -46,7 +46,7 @@ CODE: Final = {
     "inpaint": 6,
     "block": 7,
     "thumbnail": 2,
-    "borrow": 3,
+    "borrow": 4,
     "placard": 1,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
