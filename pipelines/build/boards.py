@@ -1,6 +1,8 @@
 """The boards of photographs, looked at by a pipeline that fills the city's own store.
 
-    names --Reshuffle--Read--Placard--> readings/heard.parquet (then dropped)
+    pieces--names --Reshuffle--Read--Placard--> readings/heard-00.parquet ...
+
+The graph names pieces of a table, and no photograph; the tables are dropped at the end.
 
 `index` asks for it before there is a manifest. What the network finds in a photo is
 kept where `build` looks for it, so that nothing is segmented twice; what was read of a
@@ -8,7 +10,7 @@ board is an artifact too, whatever list it is joined with.
 """
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
@@ -28,14 +30,18 @@ from pipelines.build.isolation import POOL
 from pipelines.build.launched import launched
 from pipelines.build.options import CityOptions
 from pipelines.build.prepared import bench_of
+from pipelines.build.report import Lost
 from pipelines.build.stages import Read, needed, segmented, unless
 from pipelines.index import Heard
+from pipelines.index.asked import GROUP, Asked, Piece, grouped, short
 from pipelines.index.plan import PhotoRef
 from pipelines.models import READER, Once, one_thread
-from pipelines.store import Damaged, Store, tables
+from pipelines.store import Damaged, Store, runs, tables
 
-HEARD: Final = "readings/heard.parquet"
+WANTED: Final = "readings/wanted.parquet"  # names
+HEARD: Final = "readings/heard-{:02}.parquet"  # a part of what came of them
 TEXT = pa.string()
+NAME: Final = pa.schema([pa.field("name", TEXT)])
 ARTIFACT: Final = pa.schema(
     [
         pa.field("found", TEXT),  # how the board was found
@@ -110,18 +116,20 @@ def told(one: PhotoRef | Rejection) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Wire:
-    """The pipeline over some photographs of a folder."""
+    """The pipeline over some photographs of a folder, whose names the store has."""
 
     bench: Bench
     root: str
-    names: tuple[str, ...]
+    pieces: Sequence[Piece]  # of the names
+    parts: int  # of what is told
 
     def __call__(self, pipeline: beam.Pipeline) -> None:
         """Wire the whole way from names to what was heard."""
         photos = (
             pipeline
-            | "Names" >> beam.Create(self.names)
-            | "Photos" >> beam.Map(self._ref)
+            | "Pieces" >> beam.Create(self.pieces)
+            | "Photos" >> beam.FlatMap(self._refs)
+            | "Deal" >> beam.Reshuffle()
         )
         read = photos | Read()
         seen = read.made | "Spread" >> beam.Reshuffle() | Placard(self.bench)
@@ -129,19 +137,51 @@ class Wire:
             (seen.made, seen.rejected, read.rejected)
             | beam.Flatten()
             | "Told" >> beam.Map(told)
-            | "Alone" >> beam.WithKeys("")
+            | "Parts" >> beam.WithKeys(self._part)
             | "Gather" >> beam.GroupByKey()
             | "Write" >> beam.MapTuple(self._write)
         )
 
-    def _ref(self, name: str) -> PhotoRef:
-        return PhotoRef(self.root, name, ())
+    def _refs(self, piece: Piece) -> Iterator[PhotoRef]:
+        if stopping.asked():
+            return
+        for table in self.bench.store.read_groups(WANTED, piece):
+            for name in table.column("name").to_pylist():
+                yield PhotoRef(self.root, name, ())
 
-    def _write(self, _: str, rows: Iterable[dict[str, str]]) -> None:
+    def _part(self, row: dict[str, str]) -> int:
+        return short(row["name"]) % self.parts
+
+    def _write(self, part: int, rows: Iterable[dict[str, str]]) -> None:
         if stopping.asked():  # some may lack
             return
         ordered = sorted(rows, key=lambda row: row["name"])
-        self.bench.store.write_table(HEARD, pa.Table.from_pylist(ordered, TOLD))
+        name = HEARD.format(part)
+        self.bench.store.write_table(name, pa.Table.from_pylist(ordered, TOLD))
+
+
+def wire(bench: Bench, root: str, names: Sequence[str]) -> Wire:
+    """Write names where workers read them, in groups, and wire their pipeline."""
+    groups = (pa.table({"name": some}, schema=NAME) for some in grouped(names))
+    bench.store.write_groups(WANTED, NAME, groups)
+    todo = Asked("", len(names), 0, -(-len(names) // GROUP), len(names))
+    return Wire(bench, root, todo.pieces(), runs.parts_of(len(names)))
+
+
+def gathered(store: Store, parts: int, wanted: set[str]) -> list[dict[str, str]]:
+    """Read what came of all photographs, and drop it.
+
+    Raises:
+        Lost: if something is not told of one.
+    """
+    files = [name for name in map(HEARD.format, range(parts)) if store.exists(name)]
+    rows = [row for name in files for row in store.read_table(name).to_pylist()]
+    for name in (WANTED, *files):
+        store.drop(name)
+    if lost := wanted - {row["name"] for row in rows}:
+        words = f"the runner lost {len(lost)} photos' boards, {min(lost)} first"
+        raise Lost(f"{words}: index again; what was read is kept")
+    return rows
 
 
 def boards(
@@ -160,9 +200,11 @@ def boards(
     if in_process(options) and ours.stage_seconds:
         POOL.fill()  # before there are threads and open files
     bench = bench_of(ours, store)
-    launched(options, Wire(bench, root, tuple(names)), store)
-    rows = store.read_table(HEARD).to_pylist()
-    store.drop(HEARD)
+    wired = wire(bench, root, names)
+    for part in range(wired.parts):  # of a run that was killed
+        store.drop(HEARD.format(part))
+    launched(options, wired, store)
+    rows = gathered(store, wired.parts, set(names))
     return {row["name"]: heard(row, bench) for row in rows}
 
 

@@ -3,6 +3,7 @@
 from functools import partial
 from pathlib import Path
 
+import apache_beam as beam
 import cv2
 import numpy as np
 import pyarrow.parquet as pq
@@ -10,8 +11,14 @@ import pytest
 
 from nostalgin_core.scenes.props import board_picture
 from pipelines import build
+from pipelines.build.bench import Bench
+from pipelines.build.boards import Wire, gathered, wire
+from pipelines.build.report import Lost
 from pipelines.index import Ask
 from pipelines.index.index import index
+from pipelines.models import Models
+from pipelines.store import Store
+from pipelines.store.versions import Versions
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, built, tree
 
@@ -113,3 +120,31 @@ def test_a_second_index_looks_at_nothing_again(city: Path) -> None:
     ask = Ask(partial(build.boards, options))
     index(folder / "photos", folder / "list.csv", str(city), ask=ask, force=True)
     assert {p: p.stat().st_mtime_ns for p in artifacts(city, "placard")} == before
+
+
+def test_the_graph_names_no_photograph_and_what_is_heard_has_parts(
+    tmp_path: Path,
+) -> None:
+    bench = Bench(Store(str(tmp_path)), Versions.present(Models()), Models())
+
+    def wired(count: int) -> tuple[bytes, Wire]:
+        made = wire(bench, "/photos", [f"photo_{n:07}.png" for n in range(count)])
+        pipeline = beam.Pipeline(runner="FnApiRunner")
+        made(pipeline)
+        return pipeline.to_runner_api().SerializeToString(), made
+
+    (small, few), (large, many) = wired(100), wired(60_000)
+    assert len(large) < 1.2 * len(small)
+    assert b"photo_0" not in large
+    assert (few.parts, many.parts) == (1, 4)
+    assert sum(last - first for first, last in many.pieces) == 15
+    named = [ref.name for piece in many.pieces for ref in many._refs(piece)]
+    assert (len(named), named == sorted(set(named))) == (60_000, True)
+    parts = {many._part({"name": name}) for name in named[:100]}
+    assert parts == set(range(4))
+
+
+def test_of_a_photograph_that_is_told_nothing_the_run_is_lost(tmp_path: Path) -> None:
+    store = Store(str(tmp_path))
+    with pytest.raises(Lost, match=r"lost 1 photos' boards, x\.png first"):
+        gathered(store, 2, {"x.png"})
