@@ -6,7 +6,7 @@ its rows in their order.
 """
 
 from array import array
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -14,11 +14,19 @@ import pyarrow as pa
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from nostalgin_core.records import Front
+from pipelines.build import Streets
 from pipelines.index.asked import COLUMNS, WHY, short
+from pipelines.index.plan import BlockTask
 from pipelines.index.roots import rooted
+from pipelines.store.tables import from_row
 
+CUT: Final = "cut_m"  # which streets' widths blocks use, by block
 OF_PHOTOS: Final = ("targets_px", "outlines", "quads")
 TOLD: Final = [name for name in COLUMNS.names if name not in {"number", *WHY.names}]
+
+
+Widths = Mapping[str, float]  # in metres, of streets by their plain names
 
 
 class Side(NamedTuple):
@@ -29,6 +37,7 @@ class Side(NamedTuple):
     blocks: np.ndarray  # uint64
     digests: Mapping[int, int]  # of each block: all that is told of it
     refused: int  # rows that can't be used
+    cut: Mapping[str, Widths]  # of blocks that told streets cut in two
 
 
 def side(
@@ -38,12 +47,9 @@ def side(
     ids, names, blocks = array("Q"), array("Q"), array("Q")
     digests: dict[int, int] = {}
     heights_m = directed.get("heights_m", {})
-    gaps_m, streets = (
-        directed.get("gaps_m", {}),
-        sorted(directed.get("widths_m", {}).items()),
-    )
     of_photos = [directed.get(name, {}) for name in OF_PHOTOS]
     refused = 0
+    cut = Cut(directed)
     for table in tables:
         usable = table.filter(table.column("reason").is_null())
         refused += table.num_rows - usable.num_rows
@@ -56,12 +62,56 @@ def side(
             ids.append(short(rooted(root, city), photo) if photo else 0)
             names.append(short(photo) if photo else 0)
             blocks.append(short(block))
-            more = [streets, gaps_m.get(block), heights_m.get(f"{block}-{lot}")]
+            more = [heights_m.get(f"{block}-{lot}")]
             more += [one.get(photo) for one in of_photos]
+            cut.add(block, row)
             before = digests.get(blocks[-1], 0)
             digests[blocks[-1]] = short(str(before), repr(row), repr(more))
+    for name, widths_m in cut.ended().items():
+        told = repr(sorted(widths_m.items()))
+        digests[short(name)] = short(str(digests[short(name)]), told)
     i, n, b = (np.frombuffer(one, np.uint64) for one in (ids, names, blocks))
-    return Side(i, n, b, digests, refused)
+    return Side(i, n, b, digests, refused, cut.found)
+
+
+class Cut:
+    """Finds which widths of streets blocks of two rings use, their rows following on.
+
+    Where they are written by block they are read: of a run whose blocks were told at
+    two times.
+    """
+
+    def __init__(self, directed: Mapping[str, Mapping[str, Any]]) -> None:
+        """Take what a run was told of."""
+        self.found: dict[str, Widths] = {}
+        self._written: Mapping[str, Widths] = directed.get(CUT, {})
+        known = (directed.get("widths_m", {}), directed.get("gaps_m", {}))
+        self._streets = Streets(*known) if any(known) else None
+        self._block = ""
+        self._rows: list[Sequence[Any]] = []
+
+    def add(self, block: str, row: Sequence[Any]) -> None:
+        """Take a row, its cells in the order of `TOLD`."""
+        if block in self._written:
+            self.found[block] = self._written[block]
+        if self._streets is None:
+            return
+        if block != self._block:
+            self.ended()
+        self._block = block
+        self._rows.append(row)
+
+    def ended(self) -> dict[str, Widths]:
+        """End a block, and give all that were found."""
+        rows = [dict(zip(TOLD, row, strict=True)) for row in self._rows]
+        self._rows = []
+        if self._streets is None or len({row["ring"] for row in rows}) != 2:
+            return self.found
+        fronts = {row["front_id"]: from_row(Front, row) for row in reversed(rows)}
+        task = self._streets.told(BlockTask(self._block, (*fronts.values(),), (), ""))
+        if task.widths_m:
+            self.found[self._block] = dict(task.widths_m)
+        return self.found
 
 
 def differing(before: Mapping[int, int], after: Mapping[int, int]) -> np.ndarray:
