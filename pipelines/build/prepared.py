@@ -72,7 +72,7 @@ def prepared(ours: CityOptions, store: Store, shard: Shard, warn: Warn) -> Prepa
         store.drop(runs.table_path(run, ASKED))
         store.drop_folder(f"runs/{run}")
         raise Unusable(nothing(store, todo))
-    direct(store, run, mended)
+    direct(store, run, mended.told())
     told_of = told_of_run(there, mended, anchors, schemes_of(ours))
     return Prepared(bench, todo, mended, anchors, told_of, first=first)
 
@@ -85,10 +85,9 @@ def told_of_run(
     return {"rows": rows, "places": anchors.sha256, "title": there.title}
 
 
-def direct(store: Store, run: str, mended: Corrected) -> None:
+def direct(store: Store, run: str, told: Mapping[str, Mapping[str, Any]]) -> None:
     """Write beside a run's tables what people told, and places, that no row tells."""
     index.keep(store, f"runs/{run}")
-    told = mended.told()
     if any(told.values()):
         data = json.dumps(told, sort_keys=True).encode()
         store.write_bytes(f"runs/{run}/{DIRECTED}", data)

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 from apache_beam.options.pipeline_options import DirectOptions, PipelineOptions
 
-from pipelines import build, index, site
+from pipelines import build, site
 from pipelines.build import CRASHED, CityOptions, Prepared, Report, Tell, Watch
 from pipelines.index import asked
 from pipelines.index.asked import Asked, short
@@ -20,6 +20,7 @@ from pipelines.reprocess.now import now
 from pipelines.reprocess.plan import Plan, planned
 from pipelines.reprocess.rollback import SHOWN
 from pipelines.reprocess.stale import CAUSES
+from pipelines.reprocess.waiting import told_of_both
 from pipelines.store import Store, held, key_of, runs
 from pipelines.store.refuse import drop_run
 
@@ -134,10 +135,8 @@ def prepared(plan: Plan, ours: CityOptions, run: str = "") -> Prepared:
     todo = Asked(name, plan.stale.photos_asked, plan.blocks_asked, 0, 0)
     if not run:
         todo = written(store, name, rows(plan), told.there.title)
-        if not plan.later:
-            build.direct(store, name, told.mended)
-        else:
-            index.keep(store, f"runs/{name}")
+        later = plan.later
+        build.direct(store, name, told_of_both(plan) if later else told.mended.told())
         if plan.all_redone or not (plan.later or merged.complete(store, before.run)):
             whole = (bench, todo, told.mended, told.anchors, told_of)
             return Prepared(*whole, expected=plan.expected())

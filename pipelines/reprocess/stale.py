@@ -5,7 +5,7 @@ table and one group of rows, and no pixel is opened.
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -16,7 +16,7 @@ from pipelines.reprocess import sides
 from pipelines.reprocess.now import Now
 from pipelines.reprocess.photographs import Fate, Shelves, fates, fresh, shelves
 from pipelines.reprocess.published import Published
-from pipelines.reprocess.sides import Groups, Side
+from pipelines.reprocess.sides import Groups, Side, Widths
 from pipelines.reprocess.verdicts import Verdicts, verdicts
 
 CAUSES: Final = ("new", "changed", "removed", "missing", "version")  # of photographs
@@ -37,6 +37,7 @@ class Stale:
     moved: bool  # the city's places or title are others
     spoiled: list[str]  # paths of artifacts that are damaged
     photos_asked: int = 0
+    cut_before: Mapping[str, Widths] = field(default_factory=dict)  # as `Side.cut`
     crashed: np.ndarray = field(default_factory=lambda: NONE)  # names and blocks
     before: Published = field(repr=False, default=None)  # type: ignore[assignment]
 
@@ -88,6 +89,7 @@ def stale(now: Now, before: Published, *, thorough: bool = False) -> Stale:
         moved(now, before),
         kept.spoiled,
         len(unique) - int(bool(len(unique)) and unique[0] == 0),
+        earlier.cut,
         again,
         before,
     )

@@ -32,7 +32,8 @@ def fresh(city: Path) -> Path:
     other = city.parent / "fresh"
     shutil.copytree(city.parent / "models", other / "models")
     (other / "city").mkdir()
-    for name in ("manifest.csv", "manifest.parquet", "corrections.csv"):
+    told = ("manifest.csv", "manifest.parquet", "corrections.csv", "streets.csv")
+    for name in told:
         if (city / name).exists():
             shutil.copy(city / name, other / "city" / name)
     built(other / "city", HERE)
