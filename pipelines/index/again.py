@@ -65,6 +65,12 @@ class Wish:
         near = not lists.presents(Path(self.photos))
         return near and not any(map(is_web, (self.photos, self.catalogue)))
 
+    @property
+    def near(self) -> bool:
+        """Tell whether all of it lies on this machine, as all that is kept does."""
+        paths = (getattr(self, name) for name in ("photos", *FILES))
+        return not any("://" in path or is_web(path) for path in paths)
+
     def asked(self) -> dict[str, Any]:
         """Give it as `index` takes it.
 
@@ -181,14 +187,19 @@ def kept(
 
 
 def known(store: Store) -> Kept | None:
-    """Read what a city folder was indexed with; None if nothing tells it."""
+    """Read what a city folder was indexed with; None if nothing tells it.
+
+    Nor does one that leads off this machine, which `index` never keeps: a folder of
+    another's could have us fetch what it names.
+    """
     try:
         told = json.loads(store.read_bytes(RECORD))
         cells = told.pop("wish")
         words: dict[str, Any] = {n.name: str(cells[n.name]) for n in fields(Wish)}
         words["blocks"] = tuple(map(str, cells["blocks"]))
-        if words["boards"] in get_args(Which):
-            return Kept(Wish(**words), **told)
+        wish = Wish(**words)
+        if words["boards"] in get_args(Which) and wish.near and wish.lasting:
+            return Kept(wish, **told)
     except (OSError, ValueError, TypeError, KeyError, AttributeError):
         pass
     return None
