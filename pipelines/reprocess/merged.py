@@ -46,10 +46,17 @@ def merge(store: Store, run: str, before: str, parts: int, redone: np.ndarray) -
 
 def complete(store: Store, run: str) -> bool:
     """Tell whether a run has all the tables and columns that runs have now."""
-    return all(
-        parts
-        and runs.SCHEMAS[name].names == one(store, run, name, (0, parts)).column_names
-        for name, parts in ((name, count(store, run, name)) for name in SUBJECT)
+    return all(whole_table(store, run, name) for name in SUBJECT)
+
+
+def whole_table(store: Store, run: str, name: str) -> bool:
+    """Tell whether all parts of a table are there, with the columns of now."""
+    parts = count(store, run, name)
+    wanted = [runs.table_path(run, name, (part, parts)) for part in range(parts)]
+    names = runs.SCHEMAS[name].names
+    return bool(parts) and all(
+        store.exists(path) and store.read_table(path).column_names == names
+        for path in wanted
     )
 
 

@@ -137,8 +137,7 @@ def chosen(found: Stale, budget: int) -> np.ndarray:
     since = np.full(len(every), np.iinfo(np.int64).max)
     np.minimum.at(since, at, found.since_ns)
     since[counts == 0] = 0
-    first = [int(groups.nodes[groups.labels == one].min()) for one in every]
-    order = np.lexsort((np.array(first, np.uint64), since))
+    order = np.lexsort((groups.first(every), since))
     taken = np.cumsum(counts[order]) <= budget
     taken |= counts[order] == 0
     taken[np.flatnonzero(counts[order])[:1]] = True

@@ -132,6 +132,11 @@ class Groups(NamedTuple):
         at = np.searchsorted(self.nodes, nodes)
         return self.labels[at]
 
+    def first(self, labels: np.ndarray) -> np.ndarray:
+        """Give the least name or block of each group."""
+        known, at = np.unique(self.labels, return_index=True)  # nodes are sorted
+        return self.nodes[at[np.searchsorted(known, labels)]]
+
     def within(self, labels: np.ndarray) -> np.ndarray:
         """List the names and blocks of some groups."""
         return self.nodes[np.isin(self.labels, labels)]

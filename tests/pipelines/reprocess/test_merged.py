@@ -1,12 +1,14 @@
 """Tables are merged part by part, and what is read grows as the rows do."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from pipelines.index.asked import short
 from pipelines.reprocess import merged
+from pipelines.reprocess.sides import Groups
 from pipelines.store import Store, runs
 
 SIZE = 8  # rows of a part
@@ -15,6 +17,11 @@ SIZE = 8  # rows of a part
 @pytest.fixture(autouse=True)
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runs, "PART", SIZE)
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    return Store(str(tmp_path))
 
 
 def rows(names: range, size: int) -> list[dict[str, object]]:
@@ -100,3 +107,25 @@ def test_each_row_is_found_where_it_may_stand(parts: int, there: int) -> None:
         assert number % there in runs.sources((number % parts, parts), there)
     found = sum(len(runs.sources((part, parts), there)) for part in range(parts))
     assert found == math.lcm(parts, there)
+
+
+def test_a_run_is_complete_if_all_parts_of_all_tables_are(store: Store) -> None:
+    table(store, "old", rows(range(9), 1), 2)
+    assert merged.complete(store, "old")
+    path = runs.table_path("old", "stamps", (1, 2))
+    whole = store.read_table(path)
+    store.write_table(path, whole.drop_columns(["size"]))
+    assert not merged.complete(store, "old")
+    store.remove(path)
+    assert not merged.complete(store, "old")
+    store.write_table(path, whole)
+    assert merged.complete(store, "old")
+
+
+def test_the_first_of_each_group_is_its_least_node() -> None:
+    rng = np.random.default_rng(5)
+    nodes = np.unique(rng.integers(0, 1 << 60, 400, dtype=np.uint64))
+    groups = Groups(nodes, rng.integers(0, 50, len(nodes)))
+    every = np.unique(groups.labels)[::3]
+    least = [groups.nodes[groups.labels == one].min() for one in every]
+    assert groups.first(every).tolist() == least
