@@ -9,12 +9,13 @@ import pytest
 from typer.testing import CliRunner
 
 from nostalgin_core import reconstruct, steps
-from nostalgin_core.records import Drawn, Elevation, Facade
+from nostalgin_core.records import Drawn, Elevation, Facade, Rejection
 from nostalgin_core.steps import Networks
 from pipelines import corrections
+from pipelines.build.corrected import corrected
 from pipelines.cli import app
 from pipelines.corrections import shapes
-from pipelines.index import manifest
+from pipelines.index import manifest, source
 from pipelines.models import Models
 from pipelines.store import Store, tables
 from pipelines.store.refuse import drop_unkept
@@ -91,6 +92,22 @@ def test_a_shape_beyond_its_photo_is_refused(city: Path, what: str, value: str) 
     assert (reason, "480 x 640" in detail) == ("outside its photo", True) or (
         "nonsense correction" in reason
     )
+
+
+@pytest.mark.parametrize(
+    ("x", "obeyed"), [(479, {"5_1.png": 479.0}), (480, {}), (99999, {})]
+)
+def test_a_target_beyond_its_photo_is_refused(
+    city: Path, x: int, obeyed: dict[str, float]
+) -> None:
+    """The photo is 480 pixels wide, so that its last column is 479."""
+    store = Store(str(city))
+    (city / "corrections.csv").write_text(f"{HEAD}5_1.png,,,target,{x},\n")
+    made = corrected(store, source.found(store))
+    assert made.targets_px == obeyed
+    refused = [one for one in made.rows or () if isinstance(one, Rejection)]
+    said = [(one.reason, f"x = {x} " in one.detail) for one in refused]
+    assert said == ([] if obeyed else [("outside its photo", True)])
 
 
 def test_a_shape_of_no_photo_is_refused(city: Path) -> None:
