@@ -116,7 +116,7 @@ def carried_out(
     """Do what a run is asked for, check that nothing was lost, and publish."""
     ours, store = options.view_as(CityOptions), asked_for.bench.store
     bench, todo, run = asked_for.bench, asked_for.todo, asked_for.todo.run
-    counts = {"photos": todo.photos, "blocks": todo.blocks}
+    counts = {"photos": todo.photos + todo.unplaced, "blocks": todo.blocks}
     words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
     tell("start", words, run=run, **counts)
     began = time.time()

@@ -4,11 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from nostalgin_core.records import Rejection
 from pipelines.build.streets import Streets
 from pipelines.index import manifest
 from pipelines.index.plan import BlockTask, PhotoRef
-from pipelines.index.row import Row
+from pipelines.index.row import Refused, Row
 from pipelines.index.source import Source
 from pipelines.store import Store
 
@@ -17,7 +16,7 @@ from pipelines.store import Store
 class Corrected:
     """The manifest's rows as corrected, and what is told that no row tells."""
 
-    rows: Iterable[Row | Rejection] | None = None  # None: nothing is corrected
+    rows: Iterable[Row | Refused] | None = None  # None: nothing is corrected
     sha256: str = ""  # of the corrections
     heights_m: dict[str, float] = field(default_factory=dict)  # by building
     targets_px: dict[str, float] = field(default_factory=dict)  # x, by photo
@@ -89,9 +88,9 @@ def corrected(store: Store, there: Source) -> Corrected:
     results = list(manifest.checked(cells))
     rows = [one for one in results if isinstance(one, Row)]
     made = corrections.fitting(corrections.applied(rows, given), store)
-    refused = [one for one in results if isinstance(one, Rejection)]
+    refused = [one for one in results if isinstance(one, Refused)]
     ordered = sorted(made.rows, key=in_place)
-    every = (*refused, *made.rejections, *ordered)
+    every = (*refused, *map(Refused, made.rejections), *ordered)
     return Corrected(
         every,
         given.sha256,

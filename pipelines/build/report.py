@@ -170,8 +170,8 @@ def reported(store: Store, run: str, todo: Asked) -> Report:
     unsupported = columns(store, run, "buildings", ("height_supported",))
     return Report(
         run=run,
-        photos=todo.photos,
-        rejected_photos=int((~np.isin(want.names[once], seen)).sum()),
+        photos=todo.photos + todo.unplaced,
+        rejected_photos=int((~np.isin(want.names[once], seen)).sum()) + todo.unplaced,
         facades=len(seen),
         blocks=len(counts),
         buildings=sum(buildings for buildings, _ in counts),

@@ -21,7 +21,7 @@ from pipelines.index import manifest
 from pipelines.index.cells import text
 from pipelines.index.plan import falls_to, homeless
 from pipelines.index.roots import rooted, screened
-from pipelines.index.row import Row, contradictions
+from pipelines.index.row import Refused, Row, contradictions
 from pipelines.index.source import Source
 from pipelines.store import Store, runs, tables
 
@@ -49,6 +49,7 @@ class Asked:
     rows: int  # those that can't be used among them
     title: str = ""
     first: Rejection | None = None  # of the rows that can't be used
+    unplaced: int = 0  # photos that only rows name that can't be used
 
     def pieces(self) -> list[Piece]:
         """Part the rows into at most `PIECES`, each some groups in a row."""
@@ -64,7 +65,7 @@ def ask(
     schemes: Sequence[str] = (),
     shard: Shard = (1, 1),
     warn: Warn = lambda _: None,
-    results: Iterable[Row | Rejection] | None = None,
+    results: Iterable[Row | Refused] | None = None,
 ) -> Asked:
     """Check a manifest's rows and write those that fall to a shard beside its tables.
 
@@ -81,11 +82,11 @@ def ask(
     checked = manifest.checked(cells) if results is None else results
     groups, count = written(store, run, told_as(sorting.each(checked)))
     photos, blocks = sorting.photos.count(), sorting.blocks.count()
-    told = (there.title, sorting.first)
+    told = (there.title, sorting.first, sorting.unplaced.beyond(sorting.photos))
     return Asked(run, photos, blocks, groups, count, *told)
 
 
-def told_as(results: Iterable[Row | Rejection]) -> Iterator[pa.Table]:
+def told_as(results: Iterable[Row | Refused]) -> Iterator[pa.Table]:
     """Write rows as tables of `GROUP` rows."""
     for group in grouped(map(cells_of, results)):
         yield pa.Table.from_pylist(group, COLUMNS)
@@ -118,7 +119,15 @@ class Distinct:
 
     def count(self) -> int:
         """Tell how many there are."""
-        return len(np.unique(np.frombuffer(self._seen, np.uint64)))
+        return len(self.each())
+
+    def beyond(self, others: "Distinct") -> int:
+        """Tell how many there are that are none of the others."""
+        return len(np.setdiff1d(self.each(), others.each(), assume_unique=True))
+
+    def each(self) -> np.ndarray:
+        """Give their hashes, each once."""
+        return np.unique(np.frombuffer(self._seen, np.uint64))
 
 
 @dataclass
@@ -131,9 +140,10 @@ class Sorting:
     warn: Warn
     photos: Distinct = field(default_factory=Distinct)
     blocks: Distinct = field(default_factory=Distinct)
+    unplaced: Distinct = field(default_factory=Distinct)
     first: Rejection | None = None
 
-    def each(self, results: Iterable[Row | Rejection]) -> Iterator[Row | Rejection]:
+    def each(self, results: Iterable[Row | Refused]) -> Iterator[Row | Refused]:
         """Pass on the rows of the shard, and why others can't be used.
 
         Rows of one block that follow one another are looked at together: `index` puts
@@ -142,8 +152,10 @@ class Sorting:
         together: list[Row] = []
         for one in chain(results, [None]):
             row = placed(one and screened(one, self.city, self.schemes))
-            if isinstance(row, Rejection):
-                self.first = row if self.first is None else self.first
+            if isinstance(row, Refused):
+                self.first = row.why if self.first is None else self.first
+                if row.photo:
+                    self.unplaced.add(rooted(row.root, self.city), row.photo)
                 yield row
                 continue
             if together and (row is None or block_of(row) != block_of(together[0])):
@@ -160,9 +172,11 @@ class Sorting:
                 yield row
 
 
-def placed(row: Row | Rejection | None) -> Row | Rejection | None:
+def placed(row: Row | Refused | None) -> Row | Refused | None:
     """Refuse a row whose photo has no place."""
-    return homeless(row) if isinstance(row, Row) and row.front is None else row
+    if isinstance(row, Row) and row.front is None:
+        return Refused(homeless(row), row.root, row.photo)
+    return row
 
 
 def block_of(row: Row) -> str:
@@ -194,10 +208,10 @@ def rows(
             yield Row(**own, front=tables.from_row(Front, cells), cells=said)
 
 
-def cells_of(row: Row | Rejection) -> dict[str, Any]:
+def cells_of(row: Row | Refused) -> dict[str, Any]:
     """Write a row that `rows` reads back."""
-    if isinstance(row, Rejection):
-        return tables.to_row(row)
+    if isinstance(row, Refused):
+        return {"root": row.root, "photo": row.photo} | tables.to_row(row.why)
     told = manifest.row_of(row.photo, row.front, root=row.root, credit=row.credit)
     said = {name: text(row.cells, name) for name in SAID.names}
     return {"number": row.number} | told | {n: word for n, word in said.items() if word}

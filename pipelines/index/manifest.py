@@ -23,7 +23,7 @@ import pyarrow.parquet as pq
 from nostalgin_core.records import Front, Rejection
 from pipelines.index import comma, source, told
 from pipelines.index.cells import text
-from pipelines.index.row import CSV, Row, contradictions, usable
+from pipelines.index.row import CSV, Refused, Row, contradictions, usable
 from pipelines.index.source import (
     CSV_HASH,
     KEPT,
@@ -234,7 +234,7 @@ def read(store: Store, *, whole: bool = True) -> Manifest:
     rows = tuple(one for one in results if isinstance(one, Row))
     return Manifest(
         rows,
-        tuple(one for one in results if isinstance(one, Rejection)),
+        tuple(one.why for one in results if isinstance(one, Refused)),
         (*warnings, *contradictions(rows)),
         there.sha256,
         mended=there.mended,
@@ -243,11 +243,11 @@ def read(store: Store, *, whole: bool = True) -> Manifest:
     )
 
 
-def slim(results: Iterable[Row | Rejection]) -> Iterator[Row | Rejection]:
+def slim(results: Iterable[Row | Refused]) -> Iterator[Row | Refused]:
     """Let go of cells that a row holds already, and hold words of many rows once."""
     words: dict[str, str] = {}
     for one in results:
-        if isinstance(one, Rejection):
+        if isinstance(one, Refused):
             yield one
             continue
         cells = {name: one.cells[name] for name in told.TELLING if one.cells.get(name)}
@@ -273,7 +273,7 @@ def noticed(there: Source) -> list[str]:
     return [f"{name}: column {one!r} is not known; it is kept" for one in unknown]
 
 
-def checked(cells: Iterable[comma.Cells]) -> Iterator[Row | Rejection]:
+def checked(cells: Iterable[comma.Cells]) -> Iterator[Row | Refused]:
     """Check every row by itself, so that one bad row spoils no other.
 
     Rows in which nothing is written are counted, and else ignored.

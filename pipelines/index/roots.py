@@ -13,7 +13,7 @@ from typing import Final
 
 from nostalgin_core.records import Rejection
 from pipelines.index.manifest import Manifest
-from pipelines.index.row import Row
+from pipelines.index.row import Refused, Row
 from pipelines.store import SECRETIVE, Store, secretive
 
 LOCAL: Final = "file"
@@ -27,22 +27,21 @@ def located(found: Manifest, city: str, schemes: Sequence[str]) -> Manifest:
     """
     results = [screened(row, city, schemes) for row in found.rows]
     rows = tuple(one for one in results if isinstance(one, Row))
-    foreign = (one for one in results if isinstance(one, Rejection))
+    foreign = (one.why for one in results if isinstance(one, Refused))
     return replace(found, rows=rows, rejections=(*found.rejections, *foreign))
 
 
-def screened(
-    row: Row | Rejection, city: str, schemes: Sequence[str]
-) -> Row | Rejection:
+def screened(row: Row | Refused, city: str, schemes: Sequence[str]) -> Row | Refused:
     """Find one row's photo; what is refused already stays so."""
-    if isinstance(row, Rejection):
+    if isinstance(row, Refused):
         return row
     if secretive(row.root):
-        return Rejection(row.key, "manifest", "credentials in its root", SECRETIVE)
+        why = Rejection(row.key, "manifest", "credentials in its root", SECRETIVE)
+        return Refused(why, photo=row.photo)
     if "://" in row.root:
         allowed = {LOCAL, scheme_of(city) or LOCAL, *(s.casefold() for s in schemes)}
         if scheme_of(row.root) not in allowed:
-            return refused(row)
+            return Refused(refused(row), row.root, row.photo)
     return spelt(row, city)
 
 

@@ -11,6 +11,7 @@ from nostalgin_core.records import Front, Rejection
 from pipelines.index import comma
 from pipelines.index.cells import as_written, front_from, quoted, text
 from pipelines.index.told import AS_WRITTEN, TOLD
+from pipelines.store import secretive
 
 CSV: Final = "manifest.csv"
 LONGEST_CELL: Final = 32_767  # letters: what a cell of a spreadsheet holds
@@ -52,6 +53,19 @@ class Row:
         return address if address.lower().startswith(("https://", "http://")) else ""
 
 
+@dataclass(frozen=True)
+class Refused:
+    """Why a row can't be used, and the photo that it names all the same."""
+
+    why: Rejection
+    root: str = ""
+    photo: str = ""  # empty: it names none
+
+    def __bool__(self) -> bool:
+        """Be false, as a rejection is."""
+        return False
+
+
 def contradictions(rows: Sequence[Row]) -> list[str]:
     """Name the rows that tell a front otherwise than an earlier row, which counts."""
     first: dict[tuple[str, str], Row] = {}
@@ -73,8 +87,17 @@ def contradictions(rows: Sequence[Row]) -> list[str]:
     return told
 
 
-def usable(number: int, cells: comma.Cells) -> Row | Rejection:
+def usable(number: int, cells: comma.Cells) -> Row | Refused:
     """Check one row, and name the row and the remedy if it can't be used."""
+    one = read_row(number, cells)
+    if isinstance(one, Row):
+        return one
+    root = text(cells, "root")
+    return Refused(one, "" if secretive(root) else root, text(cells, "photo"))
+
+
+def read_row(number: int, cells: comma.Cells) -> Row | Rejection:
+    """Read one row, or tell why it can't be used."""
     name = f"{CSV} row {number}"
     if None in cells:
         beyond = quoted(",".join(cells[None]))

@@ -185,18 +185,21 @@ def selected(
 
 def written(store: Store, run: str, groups: Iterator[pa.Table], title: str) -> Asked:
     """Write rows, and count what they ask for."""
-    photos, blocks = asked.Distinct(), asked.Distinct()
+    photos, blocks, unplaced = (asked.Distinct() for _ in range(3))
 
     def counted() -> Iterator[pa.Table]:
         for table in groups:
-            usable = table.filter(table.column("reason").is_null())
-            columns = (usable.column(n).to_pylist() for n in ("root", "photo", "block"))
-            for root, photo, block in zip(*columns, strict=True):
-                blocks.add(block)
+            names = ("root", "photo", "block", "reason")
+            columns = (table.column(name).to_pylist() for name in names)
+            for root, photo, block, reason in zip(*columns, strict=True):
+                if reason is None:
+                    blocks.add(block)
                 if photo:
-                    photos.add(rooted(root, store.root), photo)
+                    which = photos if reason is None else unplaced
+                    which.add(rooted(root, store.root), photo)
             if table.num_rows:
                 yield table
 
     sizes = asked.written(store, run, counted())
-    return Asked(run, photos.count(), blocks.count(), *sizes, title)
+    counts = (photos.count(), blocks.count(), *sizes)
+    return Asked(run, *counts, title, unplaced=unplaced.beyond(photos))

@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -250,6 +251,27 @@ def test_a_build_tells_machines_and_rejections_set_the_exit_code(
     assert rejected == {"5_1.png", "5_2.jpg", "5_2a.png"}
     assert nostalgin(*words, "--max-rejected", "0.8").exit_code == 0
     shutil.rmtree(city / "site")
+
+
+def test_a_build_counts_photographs_that_have_no_place(tmp_path: Path) -> None:
+    """Of four photographs two have no front, and one has a row that makes no sense."""
+    city = painted.write_city(tmp_path)
+    store = Store(str(city))
+    rows = [manifest.typed(row) for row in manifest.read(store).rows]
+    bare = dict.fromkeys(manifest.FRONT.names)
+    for row in rows:
+        row.update(bare if row["photo"] in ("5_2.jpg", "5_2a.png") else {})
+    manifest.write(store, rows)
+    text = (city / manifest.CSV).read_text()
+    spoiled = re.sub(r"(?m)^(.*6_1\.png.*),(True|False),", r"\1,maybe,", text)
+    assert spoiled != text
+    (city / manifest.CSV).write_text(spoiled)
+    words = ["build", city, "--models", tmp_path / "models", "--max-rejected", "0.8"]
+    result = nostalgin(*words)
+    assert result.exit_code == 0, result.output
+    assert "4 photos, 3 of them gave nothing" in result.output
+    assert nostalgin(*words, "--max-rejected", "0.7").exit_code == 3
+    assert "25% of them shown" in nostalgin("status", city).output
 
 
 def test_help_answers_without_loading_beam() -> None:

@@ -78,6 +78,22 @@ def test_what_is_asked_is_read_back_in_pieces(
     assert usable == list(manifest.read(store).rows[:-1])
 
 
+def test_photos_that_only_unusable_rows_name_are_counted_once(store: Store) -> None:
+    """Of `stray.jpg`, of a row with a width that is none, and of a photo with both."""
+    listed(store, 1)
+    table = (Path(store.root) / manifest.CSV).read_text()
+    placed = next(line for line in table.split("\n") if ",2.jpg," in line)
+    spoiled = placed.replace(",8.0,", ",abc,")
+    added = [spoiled, *2 * [spoiled.replace(",2.jpg,", ",other.jpg,")]]
+    stray = "photos,stray.jpg" + "," * (table.split("\n")[0].count(",") - 1)
+    text = table.rstrip() + "\n" + "\n".join([*added, stray]) + "\n"
+    (Path(store.root) / manifest.CSV).write_text(text)
+    todo = ask(store, source.found(store), "run")
+    assert (todo.photos, todo.unplaced) == (3, 2)
+    refused = [r for r in asked.rows(store, "run") if isinstance(r, Rejection)]
+    assert len(refused) == 5
+
+
 def graph(store: Store, rows: int) -> int:
     """Tell how many bytes the pipeline over so many rows has, as runners get it."""
     groups = -(-rows // asked.GROUP)

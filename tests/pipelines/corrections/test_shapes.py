@@ -9,13 +9,14 @@ import pytest
 from typer.testing import CliRunner
 
 from nostalgin_core import reconstruct, steps
-from nostalgin_core.records import Drawn, Elevation, Facade, Rejection
+from nostalgin_core.records import Drawn, Elevation, Facade
 from nostalgin_core.steps import Networks
 from pipelines import corrections
 from pipelines.build.corrected import corrected
 from pipelines.cli import app
 from pipelines.corrections import shapes
 from pipelines.index import manifest, source
+from pipelines.index.row import Refused
 from pipelines.models import Models
 from pipelines.store import Store, tables
 from pipelines.store.refuse import drop_unkept
@@ -105,7 +106,7 @@ def test_a_target_beyond_its_photo_is_refused(
     (city / "corrections.csv").write_text(f"{HEAD}5_1.png,,,target,{x},\n")
     made = corrected(store, source.found(store))
     assert made.targets_px == obeyed
-    refused = [one for one in made.rows or () if isinstance(one, Rejection)]
+    refused = [one.why for one in made.rows or () if isinstance(one, Refused)]
     said = [(one.reason, f"x = {x} " in one.detail) for one in refused]
     assert said == ([] if obeyed else [("outside its photo", True)])
 
