@@ -1,6 +1,7 @@
 """Comma-separated values as people and spreadsheets write them, read or refused.
 
-A mark at the start, any line ends, quoted line breaks and empty lines are all read. An
+A mark at the start, any line ends, quoted line breaks and empty lines are all read, and
+semicolons or tabs in the place of commas, as spreadsheets of many countries save. An
 empty line is a row without cells, so that rows keep the numbers that a spreadsheet
 shows.
 """
@@ -22,7 +23,10 @@ NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 MOST_CELL: Final = 2**31 - 1  # letters; what is too long is named by its row later
 MOST_LINE: Final = 20_000_000  # letters
 MOST_ROWS: Final = 5_000_000
-OTHERS: Final = re.compile(r"[;\t|]")  # what parts cells in other dialects
+MOST_HEADER: Final = 65_536  # letters that tell what parts the cells
+SEPARATORS: Final = (",", ";", "\t")
+OTHERS: Final = re.compile(r"[|]")  # what parts cells in dialects that are not read
+QUOTED: Final = re.compile(r'"[^"]*("|$)')
 
 
 class NoTable(ValueError):  # noqa: N818 - it reads as what it is about
@@ -32,8 +36,9 @@ class NoTable(ValueError):  # noqa: N818 - it reads as what it is about
 def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], Held]:
     """Read the names of the columns, and the rows below them.
 
-    In a table of `ours` the apostrophes are taken off that `written` put before what a
-    spreadsheet would run.
+    Cells are parted by whichever of `SEPARATORS` is most often in the header, outside
+    quotes; by commas, if none is more often there. In a table of `ours` the apostrophes
+    are taken off that `written` put before what a spreadsheet would run.
 
     Raises:
         NoTable: if it is no UTF-8, has a broken quote, parts its cells by other signs,
@@ -41,9 +46,11 @@ def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], Held]:
     """
     table: list[list[str]] = []
     try:
-        text = io.StringIO(data.decode("utf-8-sig"), newline="")
+        text = data.decode("utf-8-sig")
+        read = short(io.StringIO(text, newline=""))
         with long_cells():
-            for row in shared(csv.reader(short(text), strict=True)):
+            reader = csv.reader(read, delimiter=separator(text), strict=True)
+            for row in shared(reader):
                 if len(table) > MOST_ROWS:
                     raise NoTable(f"has more than {MOST_ROWS:,} rows: part it")
                 table.append([*map(bare, row)] if ours else row)
@@ -59,6 +66,13 @@ def parsed(data: bytes, *, ours: bool = False) -> tuple[list[str], Held]:
     if twice:
         raise NoTable(f"has two columns {twice[0]!r}: rename or delete one of them")
     return names, Held(names, table)
+
+
+def separator(text: str) -> str:
+    """Find what parts a table's cells: the sign that its header has most of."""
+    header = QUOTED.sub("", text[:MOST_HEADER]).lstrip("\r\n")
+    names = re.split(r"[\r\n]", header, maxsplit=1)[0]
+    return max(SEPARATORS, key=names.count)
 
 
 @contextlib.contextmanager

@@ -17,6 +17,7 @@ from nostalgin_core.catalogue import NAMELESS, Catalogue, Naming
 from nostalgin_core.records import Rejection
 from pipelines import bounded
 from pipelines.index import comma, letters, names
+from pipelines.index.cells import quoted
 from pipelines.index.images import Nothing
 from pipelines.index.web import is_web
 from pipelines.store import textual
@@ -26,6 +27,8 @@ FIRST_ROW: Final = 2
 FIRST_RECORD: Final = 1  # JSON has no header
 KEYS: Final = frozenset(("block", "tax_block", "lot", "tax_lot", "bbl"))
 PRESENTATION: Final = re.compile(r"iiif\.io/api/presentation/")
+
+SHOWN: Final = 8  # columns that a message names
 
 Tell = Callable[..., None]
 
@@ -121,10 +124,21 @@ def listing(listed: str | Path, city: str, encoding: str = "") -> Listing:
         made = of_json(data, path, city)
         return replace(made, warnings=(*doubts, *made.warnings))
     try:
-        _, rows = comma.parsed(data)
+        columns, rows = comma.parsed(data)
     except comma.NoTable as problem:
         raise Nothing(f"{path} {problem}") from problem
+    if columns and len(catalogue.unknown(columns)) == len(columns):
+        raise Nothing(f"{path} {strange(columns)}")
     return Listing(path.name, rows, warnings=doubts)
+
+
+def strange(columns: Sequence[str]) -> str:
+    """Name the columns of a list that has none that is known, and those wanted."""
+    shown = ", ".join(quoted(one) for one in columns[:SHOWN])
+    return (
+        f"has no column that is known: it has {shown}; its first row is to name "
+        "photo, block, lot (or bbl), and what else is told, as docs/lists.md has it"
+    )
 
 
 def of_json(data: bytes, path: Path, city: str) -> Listing:

@@ -19,6 +19,22 @@ def test_neither_line_ends_nor_a_mark_at_the_start_matter(end: str, mark: str) -
     assert (names, list(rows)) == (NAMES, ROWS)
 
 
+@pytest.mark.parametrize("sign", [";", "\t"])
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_semicolons_and_tabs_part_cells_as_commas_do(sign: str, mark: str) -> None:
+    names, rows = parsed((mark + TEXT.replace(",", sign)).encode())
+    assert (names, list(rows)) == (NAMES, ROWS)
+
+
+def test_what_parts_cells_is_told_by_the_header_outside_its_quotes() -> None:
+    """Decimal commas in rows, and commas in quoted names, part nothing."""
+    data = b'"photo, ""its"", name";width_m\n5_1.jpg;18,5\n'
+    names, rows = parsed(data)
+    assert names == ['photo, "its", name', "width_m"]
+    assert [list(row.values()) for row in rows] == [["5_1.jpg", "18,5"]]
+    assert parsed(b'photo,"a;b;c"\n1,2\n')[0] == ["photo", "a;b;c"]
+
+
 CELLS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))
 RUN = st.text("'=+-@\t\r\n\uff1d\uff0b\uff0d\uff201.5e,\"x ", max_size=6)
 
@@ -83,7 +99,7 @@ def test_words_that_rows_share_are_held_once() -> None:
         (TEXT.encode("utf-16"), "save it as CSV in UTF-8"),
         ("photo\né".encode("latin-1"), "save it as CSV in UTF-8"),
         (b'photo\n"a', "mend its quotes"),
-        (b"photo;remark\na.jpg;torn\n", "save it with commas"),
+        (b"photo|remark\na.jpg|torn\n", "save it with commas"),
         (b"photo,lot,photo\na,1,b\n", "'photo': rename or delete"),
     ],
 )

@@ -48,6 +48,26 @@ def test_1940s_nyc_s_photographs_are_a_list(tmp_path: Path) -> None:
     assert row.credit == ""
 
 
+@pytest.mark.parametrize("sign", [",", ";", "\t"])
+def test_a_list_may_part_its_cells_as_any_spreadsheet_does(
+    tmp_path: Path, sign: str
+) -> None:
+    list_csv = "photo,block,lot,street,address\na.jpg,5,1,Elm Street,12\n"
+    made = written(tmp_path, "list.csv", list_csv.replace(",", sign), "a.jpg")
+    (row,) = rows(tmp_path)
+    assert row.front is not None
+    assert (row.front.block, row.front.lot, row.front.address) == ("5", "1", "12")
+    assert not made.rejections
+
+
+def test_a_list_without_any_known_column_names_its_own_and_those_wanted(
+    tmp_path: Path,
+) -> None:
+    with pytest.raises(Nothing, match=r"'Foto', 'Blok'.*photo, block, lot") as told:
+        written(tmp_path, "list.csv", "Foto;Blok\na.jpg;5\n", "a.jpg")
+    assert "docs/lists.md" in str(told.value)
+
+
 def test_oldnyc_s_photographs_stand_by_their_places(tmp_path: Path) -> None:
     record = {
         "id": "705161f-a",
