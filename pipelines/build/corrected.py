@@ -8,7 +8,7 @@ from pipelines.build.streets import Streets
 from pipelines.index import manifest
 from pipelines.index.plan import BlockTask, PhotoRef
 from pipelines.index.row import Refused, Row
-from pipelines.index.source import Source
+from pipelines.index.source import Source, Unusable
 from pipelines.store import Store
 
 
@@ -78,10 +78,16 @@ def corrected(store: Store, there: Source) -> Corrected:
     """Merge a city's corrections over its manifest; the file itself stays as it is.
 
     Where there are any, all rows are held at once.
+
+    Raises:
+        Unusable: if a file of corrections can't be read at all: a city without them is
+            not what is asked for.
     """
     from pipelines import corrections  # whose models of records no worker needs
 
     given = corrections.read(store)
+    for why in given.unreadable:
+        raise Unusable(f"{store.root}/{why.key} {why.detail}")
     if not given.sha256:
         return Corrected()
     cells = (one for batch in there.batches() for one in batch)

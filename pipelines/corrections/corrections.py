@@ -23,14 +23,13 @@ import numpy as np
 from pydantic import (
     BaseModel,
     ConfigDict,
-    ValidationError,
     field_validator,
     model_validator,
 )
 
 from nostalgin_core.records import Rejection
 from pipelines import bounded
-from pipelines.corrections import shapes
+from pipelines.corrections import shapes, words
 from pipelines.index import comma
 from pipelines.index.cells import LEAST_M, MOST_FRONTS, MOST_M
 from pipelines.store import Store
@@ -68,6 +67,8 @@ SHAPES: Final[dict[str, Callable[[str], np.ndarray]]] = {
     "mask": shapes.outline,
     "quad": shapes.quad,
 }
+UNREADABLE: Final = "unreadable file"
+REQUIRED: Final = ("what", "value")
 LONGEST_SHAPE: Final = 32_767  # letters: what a cell of a spreadsheet holds
 
 
@@ -106,18 +107,17 @@ class Correction(BaseModel):
         """Insist on what it speaks of, and on a value that this may have."""
         self._short()
         if not self.subject:
-            raise ValueError(f"{SUBJECTS[self.what]} is empty: {self.what} is of one")
+            of = SUBJECTS[self.what]
+            raise ValueError(f"{of} is empty: write of which {of} {self.what} tells")
         if self.what in SHAPES:
             try:
                 SHAPES[self.what](self.value)
             except ValueError as problem:
                 raise ValueError(f"{self.what} {problem}") from problem
         elif self.what in LIMITS:
-            low, high = LIMITS[self.what]
-            if not low <= self.number <= high:
-                raise ValueError(f"{self.what} is not {low:g} to {high:g}")
+            words.limited(self.what, self.value, *LIMITS[self.what])
         elif len(self.lot_key) != 2:
-            raise ValueError(f"{self.what} is {self.value[:40]!r}: write block-lot")
+            raise ValueError(words.no_lot(self.what, self.value))
         return self
 
     def _short(self) -> None:
@@ -140,6 +140,11 @@ class Correction(BaseModel):
         return str(getattr(self, SUBJECTS[self.what]))
 
     @property
+    def about(self) -> tuple[str, str]:
+        """Tell what is corrected: a board's reading is a photograph's key."""
+        return ("key" if self.what == "placard" else self.what), self.subject
+
+    @property
     def number(self) -> float:
         """Read a value that is a number."""
         return float(self.value)
@@ -159,6 +164,11 @@ class Corrections:
     given: tuple[Correction, ...] = ()
     rejections: tuple[Rejection, ...] = ()
     sha256: str = ""  # empty: there are none
+
+    @property
+    def unreadable(self) -> tuple[Rejection, ...]:
+        """Give the files of which not a row could be read."""
+        return tuple(one for one in self.rejections if one.reason == UNREADABLE)
 
 
 def read(store: Store) -> Corrections:
@@ -191,8 +201,10 @@ def taken(files: Iterable[tuple[str, Callable[[], bytes]]]) -> Corrections:
             data = read_bytes()
             rows = lines(data) if name.endswith(JSONL) else table(data)
         except (OSError, ValueError) as problem:
-            why = f"{getattr(problem, 'strerror', None) or problem}; mend the file"
-            rejections.append(Rejection(name, "corrections", "unreadable file", why))
+            told = getattr(problem, "strerror", None)
+            why = f"can't be read: {told}" if told else str(problem)
+            why += "; mend the file, or move it away"
+            rejections.append(Rejection(name, "corrections", UNREADABLE, why))
             continue
         digest.update(name.encode() + b"\0" + data)
         for number, row in rows:
@@ -200,18 +212,13 @@ def taken(files: Iterable[tuple[str, Callable[[], bytes]]]) -> Corrections:
             try:
                 cells = of_line(row) if isinstance(row, bytes) else row
                 one = Correction.model_validate(cells | {"row": key})
-                given[meaning(one.what), one.subject] = one
+                given[one.about] = one
             except ValueError as problem:
-                told = reason(problem)
+                told = words.reason(problem)
                 bad = Rejection(key, "corrections", "nonsense correction", told)
                 rejections.append(bad)
     sha256 = digest.hexdigest() if some else ""
     return Corrections(tuple(given.values()), tuple(rejections), sha256)
-
-
-def meaning(what: str) -> str:
-    """Tell what a correction is about: a board's reading is a photograph's key."""
-    return "key" if what == "placard" else what
 
 
 def table(data: bytes) -> list[tuple[int, dict[str, Any]]]:
@@ -220,7 +227,9 @@ def table(data: bytes) -> list[tuple[int, dict[str, Any]]]:
     Raises:
         NoTable: if it is none.
     """
-    _, rows = comma.parsed(data, ours=True)
+    names, rows = comma.parsed(data, ours=True)
+    if names and (missing := [one for one in REQUIRED if one not in names]):
+        raise comma.NoTable(words.lacking(missing, names))
     return [
         (number, {str(name): cell for name, cell in row.items() if name})
         for number, row in enumerate(rows, 2)
@@ -250,18 +259,10 @@ def of_line(line: bytes) -> dict[str, Any]:
     except json.JSONDecodeError as problem:
         where = f"is no JSON from letter {problem.colno} on: {problem.msg}"
         raise ValueError(f"{where}; mend the line or take it out") from problem
+    except ValueError as problem:  # which Python gives of thousands of digits
+        raise ValueError("has a number that is too long: shorten it") from problem
     except RecursionError as problem:
         raise ValueError("is nested too deep: take the line out") from problem
     if not isinstance(one, dict):
         raise ValueError('is no object: write {"what": ..., "value": ...}')  # noqa: TRY004
     return one
-
-
-def reason(problem: ValueError) -> str:
-    """Tell the first thing that is wrong with a correction."""
-    if not isinstance(problem, ValidationError):
-        return str(problem)
-    first = problem.errors(include_url=False, include_input=False)[0]
-    where = ".".join(map(str, first["loc"]))
-    words = first["msg"].removeprefix("Value error, ")
-    return f"{where}: {words}" if where else words

@@ -6,11 +6,15 @@ written; where the photo cuts the front off they may lie outside of it.
 """
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 import shapely
 from jaxtyping import Float
+
+from pipelines.corrections.words import numeric
+from pipelines.index.cells import quoted
 
 FEWEST, MOST = 4, 1000  # points of an outline
 LEAST_AREA: Final = 400.0  # square pixels: nothing can be seen on less
@@ -38,10 +42,18 @@ def read(value: str) -> Points:
     try:
         points = np.array(words, np.float64).reshape(-1, 2)
     except ValueError as problem:
-        raise ValueError("has what is no number: write x,y x,y x,y x,y") from problem
-    if not np.all(np.abs(points) <= FARTHEST):  # which nan is not, either
+        raise ValueError(no_number(words)) from problem
+    if np.any(np.isnan(points)):
+        raise ValueError(no_number(words))
+    if not np.all(np.abs(points) <= FARTHEST):
         raise ValueError(f"has a number beyond {FARTHEST:,.0f} pixels: mend it")
     return points
+
+
+def no_number(some: Sequence[str]) -> str:
+    """Name the first word that is no number, with the remedy."""
+    first = next((one for one in some if not numeric(one)), "")
+    return f"has {quoted(first)}, which is no number: write x,y x,y x,y x,y"
 
 
 def written(points: Points) -> str:

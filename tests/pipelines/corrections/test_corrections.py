@@ -8,8 +8,10 @@ import pytest
 
 from nostalgin_core.records import Front
 from pipelines import corrections
+from pipelines.build.corrected import corrected
 from pipelines.corrections.corrections import Corrections
-from pipelines.index import manifest
+from pipelines.index import manifest, source
+from pipelines.index.manifest import Unusable
 from pipelines.index.row import Row
 from pipelines.store import Store
 from tests.pipelines import painted
@@ -144,6 +146,50 @@ def test_a_file_that_is_no_table_is_told(data: bytes, tmp_path: Path) -> None:
     assert rejection.key == "corrections.csv"
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (
+            ",5-1-0,,width_m,18;5,",
+            "value is '18;5', no number: write width_m in metres",
+        ),
+        (',5-1-0,,width_m,"18,5",', "with a decimal point, as 18.5"),
+        (
+            ",5-1-0,,width_m,500,",
+            "value is '500', but width_m is from 1 to 400, in metres",
+        ),
+        (",5-1-0,,order,,", "value is empty: write order as a rank in its ring"),
+        ("5_1.png,,,key,five,", "write key as block-lot, as 993-9"),
+        (",,,key,5-3,", "photo is empty: write of which photo key tells"),
+        ("5_1.png,,,mood,12,", "what is 'mood': write key, placard, target"),
+    ],
+)
+def test_a_bad_correction_tells_its_column_and_the_remedy(
+    line: str, said: str, tmp_path: Path
+) -> None:
+    (rejection,) = read(tmp_path, line).rejections
+    assert said in rejection.detail
+
+
+def test_a_table_parted_by_semicolons_corrects_alike(tmp_path: Path) -> None:
+    line = ",5-2-0,,width_m,6.1,"
+    by_commas = read(tmp_path, line).given
+    (tmp_path / "corrections.csv").write_text(f"{HEAD}{line}\n".replace(",", ";"))
+    assert corrections.read(Store(str(tmp_path))).given == by_commas
+
+
+@pytest.mark.parametrize("data", [b"\xff\xfe", b"photo,width\na.jpg,6\n"])
+def test_corrections_that_cannot_be_read_stop_a_build(
+    data: bytes, tmp_path: Path
+) -> None:
+    store = Store(str(tmp_path))
+    front_row = manifest.row_of("5_1.png", front(1, 0), root="", credit="")
+    manifest.write(store, [front_row])
+    (tmp_path / "corrections.csv").write_bytes(data)
+    with pytest.raises(Unusable, match=r"corrections.csv .*mend the file"):
+        corrected(store, source.found(store))
+
+
 def test_lines_of_json_say_the_same_as_a_table(tmp_path: Path) -> None:
     one = {"what": "width_m", "front_id": "5-2-0", "value": 6.1}
     (tmp_path / "corrections.jsonl").write_text(f"{json.dumps(one)}\n\n")
@@ -166,8 +212,11 @@ GOOD = b'{"what": "width_m", "front_id": "5-2-0", "value": 6.1}'
         (b'{"note": "caf\xe9"}', "is not UTF-8"),
         (b"[" * 200_000, "is nested too deep"),
         (b"[1]", "is no object"),
-        (b"9" * 5000, "Exceeds the limit"),
-        (b'{"what": "key", "photo": "\\ud800", "value": "5-3"}', "photo: "),
+        (b"9" * 5000, "has a number that is too long"),
+        (b'{"what": "key", "photo": "\\ud800", "value": "5-3"}', "photo has a letter"),
+        (b'{"value": 6.1}', "what is missing"),
+        (b'{"what": "key", "value": null}', "value is missing"),
+        (b'{"what": "key", "value": {}}', "value is '{}', neither words nor a number"),
     ],
 )
 def test_a_bad_line_is_told_by_its_number_and_harms_no_other(

@@ -45,10 +45,10 @@ def refusals(city: Path, *lines: str) -> list[tuple[str, str, str]]:
     [
         ("mask", "10,10 200,200 200,10 10,200", "crosses or touches itself"),
         ("mask", "10,10 200,10 200,200", "has 3 points: a front has four corners"),
-        ("mask", "10,10 nan,10 200,200 10,200", "has a number beyond"),
+        ("mask", "10,10 nan,10 200,200 10,200", "has 'nan', which is no number"),
         ("mask", "10,10 inf,10 200,200 10,200", "has a number beyond"),
         ("mask", "10,10 200,10 200,200 10", "a number without a partner"),
-        ("mask", "10,10 200,ten 200,200 10,200", "has what is no number"),
+        ("mask", "10,10 200,ten 200,200 10,200", "has 'ten', which is no number"),
         ("mask", "10,10 20,10 20,20 10,20", "covers 100 pixels"),
         ("mask", "1,2 " * 1_001, "points, more than 1,000"),
         ("mask", "", "has 0 points"),
