@@ -14,6 +14,8 @@ from nostalgin_core.records import Front, Rejection
 from pipelines.corrections.corrections import Correction, Corrections
 from pipelines.index.row import Row
 
+MOST_NAMES: Final = 8  # of a lot's fronts, in a message
+
 # What is done again for each; what it is made from is found.
 AGAIN: Final = {
     "key": "the blocks that the photo leaves and enters",
@@ -116,7 +118,7 @@ def widened(made: Applied, one: Correction) -> Applied:
     """Let a front be as wide as is known."""
     own = fronts_of(made, one.front_id)
     if not own:
-        return refused(made, one, "no such front", "write its front_id")
+        return refused(made, one, "no such front", of_its_lot(made, one.front_id))
     first = own[0]
     mark = " assumed" if first.width_assumed else ""
     mended = replaced(made, one.front_id, width_m=one.number, width_assumed=False)
@@ -130,7 +132,7 @@ def ordered(made: Applied, one: Correction) -> Applied:
     """
     own = fronts_of(made, one.front_id)
     if not own:
-        return refused(made, one, "no such front", "write its front_id")
+        return refused(made, one, "no such front", of_its_lot(made, one.front_id))
     moved = own[0]
     others = {
         row.front.front_id: row.front
@@ -190,6 +192,22 @@ def cornered(made: Applied, one: Correction) -> Applied:
 def fronts_of(made: Applied, front_id: str) -> list[Front]:
     """List the rows' fronts of one name."""
     return [r.front for r in made.rows if r.front and r.front.front_id == front_id]
+
+
+def of_its_lot(made: Applied, front_id: str) -> str:
+    """Say which names the fronts of a lot have in the manifest.
+
+    A model also names walls that were made round a corner: they are of no row.
+    """
+    names = dict.fromkeys(
+        front.front_id
+        for front in (row.front for row in made.rows)
+        if front and front_id.startswith(f"{front.block}-{front.lot}-")
+    )
+    if not names:
+        return "no lot has it: write a front_id of manifest.csv, as block-lot-side"
+    shown = ", ".join([*names][:MOST_NAMES])
+    return f"its lot has {shown} in manifest.csv: write one of these"
 
 
 def replaced(made: Applied, front_id: str, **fields: float) -> Applied:

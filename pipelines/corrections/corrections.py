@@ -2,8 +2,8 @@
 
 photo,front_id,building_id,what,value,note
 993_8.jpg,,,key,993-9,the board says so
-,993-11-0,,width_m,6.1,measured on the atlas
-,993-11-0,,order,12.5,stands between the fronts of rank 12 and 13
+,993-11-3,,width_m,6.1,measured on the atlas
+,993-11-3,,order,12.5,stands between the fronts of rank 12 and 13
 ,,993-11,height_m,18,five storeys
 993_8.jpg,,,target,412,the facade at x = 412 pixels
 993_8.jpg,,,mask,"80,20 400,32 402,610 78,600",the outline of the whole front

@@ -190,6 +190,15 @@ def test_corrections_that_cannot_be_read_stop_a_build(
         corrected(store, source.found(store))
 
 
+@pytest.mark.parametrize("what", ["width_m", "order"])
+def test_a_front_that_is_none_tells_those_of_its_lot(what: str, tmp_path: Path) -> None:
+    """A wall made round a corner has a name in the model, and no row."""
+    given = read(tmp_path, f",5-4-0,,{what},6,", f",5-44-0,,{what},6,")
+    lot, nowhere = corrections.applied(ROWS, given).rejections
+    assert "its lot has 5-4-1 in manifest.csv" in lot.detail
+    assert "no lot has it" in nowhere.detail
+
+
 def test_lines_of_json_say_the_same_as_a_table(tmp_path: Path) -> None:
     one = {"what": "width_m", "front_id": "5-2-0", "value": 6.1}
     (tmp_path / "corrections.jsonl").write_text(f"{json.dumps(one)}\n\n")
