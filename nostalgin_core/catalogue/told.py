@@ -1,10 +1,11 @@
-"""What is told of lots that are set aside: why, and the likeliest corrections.
+"""What is told of doubtful lots: why, as what each is taken, the likeliest corrections.
 
-They are another street of the block where the number has its gap, and another number on
-the lot's own street: the one that lies between its neighbours' and is most easily
+These are another street of the block where the number has its gap, and another number
+on the lot's own street: the one that lies between its neighbours' and is most easily
 mistaken for what is written.
 """
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Final
 
@@ -19,18 +20,34 @@ MOST: Final = 3  # streets
 def told(
     doubts: Iterable[tuple[Spot, str]], sides: Sequence[Along], known: Faces
 ) -> list[str]:
-    """Write a line for each doubtful lot, its reasons joined, in the order of lots."""
+    """Write a line for each doubtful lot, its reasons joined, in the order of lots.
+
+    It names the list's row, and the street on which the lot is taken to stand.
+    """
     reasons: dict[tuple[str, str], tuple[Spot, list[str]]] = {}
     for spot, why in doubts:
         reasons.setdefault((spot.lot, spot.listed), (spot, []))[1].append(why)
     where = {one.lot: (side, i) for side in sides for i, one in enumerate(side.spots)}
+    streets: dict[str, list[str]] = defaultdict(list)
+    for one in (one for side in sides for one in side.spots):
+        streets[one.lot].append(one.street)
     lines = []
     for spot, why in sorted(reasons.values(), key=lambda one: (one[0].key, one[0].lot)):
         likely = _likely(spot, where.get(spot.lot), known)
-        remedy = f"; likeliest {' or '.join(likely)}" if likely else "; mend its row"
-        some = "; ".join(dict.fromkeys(why))
-        lines.append(f"block {spot.block}, {spot.told()}: {some}{remedy}")
+        some = "; ".join(dict.fromkeys([*why, *_taken(spot, streets[spot.lot])]))
+        remedy = f"; likeliest {' or '.join(likely)}" if likely else ""
+        words = f"row {spot.row}: {some}; mend row {spot.row} if it is wrong{remedy}"
+        lines.append(f"block {spot.block}, {spot.told()}: {words}")
     return lines
+
+
+def _taken(spot: Spot, streets: Sequence[str]) -> list[str]:
+    """Say on which street a lot is placed, if its row names one."""
+    if not spot.listed or not streets:
+        return []
+    if folded(spot.listed) in map(folded, streets):
+        return ["it is left as written"]
+    return [f"it is taken as on {' and '.join(dict.fromkeys(streets))}"]
 
 
 def _likely(spot: Spot, where: tuple[Along, int] | None, known: Faces) -> list[str]:

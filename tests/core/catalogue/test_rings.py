@@ -233,7 +233,21 @@ def test_a_lot_on_no_street_stands_by_its_number_and_its_neighbours() -> None:
     fronts, told = rings.fronts(bare)
     assert walk(fronts) == walk(rings.fronts(PLAIN)[0])
     assert fronts[1].street == "West 10 Street"
-    assert "lot 2 (137): it names no street" in told[0]
+    assert "lot 2 (137): row 3: it names no street" in told[0]
+
+
+def test_a_street_that_is_changed_is_told_with_the_row_and_one_that_stays_too() -> None:
+    """Lot 2's street is another's, so that it moves; lot 10's number is what is odd."""
+    moved = replace(PLAIN[1], street="West 11 Street", row=7)
+    odd = replace(PLAIN[7], address="13600", row=9)
+    fronts, told = rings.fronts([PLAIN[0], moved, *PLAIN[2:7], odd, *PLAIN[8:]])
+    streets = {one.lot: one.street for one in fronts}
+    (first,) = [line for line in told if "lot 2 (137 West 11 Street): row 7: " in line]
+    assert streets["2"] == "West 10 Street"
+    assert "it is taken as on West 10 Street; mend row 7 if it is wrong" in first
+    (last,) = [line for line in told if "lot 10 (13600 West 11 Street): row 9" in line]
+    assert streets["10"] == "West 11 Street"
+    assert "it is left as written; mend row 9" in last
 
 
 def test_two_lots_with_one_key_are_both_kept_and_told() -> None:
@@ -264,7 +278,7 @@ def test_a_single_lot_can_be_an_island() -> None:
     fronts, told = rings.fronts(alone)
     assert walk(fronts, 0) == ["6"]
     assert sorted(walk(fronts, 1)) == sorted(o.lot for o in alone if o.lot != "6")
-    assert "lot 6 (1431 Broadway): it has a ring to itself" in told[0]
+    assert "lot 6 (1431 Broadway): row 6: it has a ring to itself" in told[0]
 
 
 def test_a_number_of_the_other_parity_makes_no_island() -> None:
