@@ -259,9 +259,12 @@ def noticed(there: Source) -> list[str]:
     """Name columns that are not known; those that must be there are insisted on.
 
     Raises:
-        Unusable: if one lacks.
+        Unusable: if one lacks, or nothing is written.
     """
     name, names = there.name, there.names()
+    if not any(str(one).strip() for one in names):
+        where = f"{there.where}/{name}"
+        raise Unusable(f"{where} is empty: delete it, or run `nostalgin index --force`")
     missing = [one for one in REQUIRED if one not in names]
     if missing:
         raise Unusable(

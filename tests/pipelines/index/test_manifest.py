@@ -63,6 +63,15 @@ def test_either_form_says_the_same(store: Store, lost: str) -> None:
     assert manifest.read(store).rows == both.rows
 
 
+@pytest.mark.parametrize("data", ["", "\n", "\ufeff\n"])
+def test_an_empty_manifest_is_called_empty(store: Store, data: str) -> None:
+    (Path(store.root) / manifest.CSV).write_text(data)
+    with pytest.raises(
+        manifest.Unusable, match=r"is empty: delete it, or run .*--force"
+    ):
+        manifest.read(store)
+
+
 def test_a_mended_csv_wins(store: Store) -> None:
     edit(store, ("561-565", "561"))
     assert manifest.read(store).rows[0].front.address == "561"  # type: ignore[union-attr]
