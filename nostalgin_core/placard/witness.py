@@ -35,11 +35,17 @@ class Judged:
 
 
 def judge(
-    name: Key | None, listed: Sequence[Key], board: Joined | None, *, why: str = ""
+    name: Key | None,
+    listed: Sequence[Key],
+    board: Joined | None,
+    *,
+    why: str = "",
+    spoiled: bool = False,
 ) -> Judged:
     """Hear a photograph's file name, the rows that name it, and its board.
 
-    `why` tells why no board was read of which one was wanted.
+    `why` tells why no board was read of which one was wanted; of a photograph that is
+    `spoiled` it is what is to be mended first.
     """
     seen = board.key if board is not None and board.sure else None
     told = {
@@ -51,7 +57,7 @@ def judge(
     key = before[0] if before else seen
     speak = {who: keys for who, keys in told.items() if keys}
     if not speak:
-        return silent(board, why)
+        return silent(board, why, spoiled=spoiled)
     if not set.intersection(*map(set, speak.values())):
         said = "; ".join(f"{who} says {spelled(keys)}" for who, keys in speak.items())
         remedy = f"{said}: look at the picture, and mend the wrong one"
@@ -66,8 +72,10 @@ def judge(
     return Judged(alone[next(iter(speak))], key)
 
 
-def silent(board: Joined | None, why: str) -> Judged:
+def silent(board: Joined | None, why: str, *, spoiled: bool = False) -> Judged:
     """Tell what is to be done about a photograph that nothing places for sure."""
+    if spoiled:
+        return Judged("silent", None, why)
     if board is None or not board.text:
         return Judged("silent", None, f"{why}: {ROW}" if why else ROW)
     if board.key is not None and not board.listed:

@@ -211,7 +211,7 @@ def boards(
 def heard(row: Mapping[str, str], bench: Bench) -> Heard:
     """Take what was read of one photo's board; its picture waits until it is wanted."""
     if row["reason"]:
-        return Heard(why=f"{row['reason']}: {row['detail']}")
+        return Heard(why=f"{row['reason']}: {row['detail']}", spoiled=True)
     path = path_of(row["sha256"], bench)
     try:
         return kept(row["sha256"], path, bench.store)
@@ -255,7 +255,8 @@ def boards_read(
             path = path_of(sha256, bench)
             verdict = bench.store.verdict(path)
             if isinstance(verdict, Rejection):
-                found[name] = Heard(why=f"{verdict.reason}: {verdict.detail}")
+                why = f"{verdict.reason}: {verdict.detail}"
+                found[name] = Heard(why=why, spoiled=True)
             else:
                 found[name] = kept(sha256, path, bench.store)
         except (Damaged, OSError):

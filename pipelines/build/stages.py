@@ -63,12 +63,21 @@ def read(ref: PhotoRef) -> PhotoRef | Rejection:
         (stamp,) = photos.stamps([ref.name])  # before: what is written later shows
         data = photos.read_bytes(ref.name)
     except (OSError, ValueError) as problem:  # the latter of a name that none can have
-        why = getattr(problem, "strerror", None) or str(problem)
-        remedy = f"{ref.root}/{ref.name}: {why}; restore the file or mend the row"
-        return Rejection(ref.name, "photo", "unreadable file", remedy)
+        return Rejection(ref.name, "photo", "unreadable file", gone(problem, ref.root))
     size, mtime_ns = stamp or (0, 0)
     sha256 = hashlib.sha256(data).hexdigest()
     return replace(ref, sha256=sha256, size=size, mtime_ns=mtime_ns)
+
+
+def gone(problem: Exception, root: str) -> str:
+    """Tell why a photo can't be read, alike for all of its folder, and the remedy."""
+    if isinstance(problem, FileNotFoundError):
+        return (
+            f"not in {root}: was the folder moved or renamed? run `nostalgin index` "
+            "again, or restore the file"
+        )
+    why = getattr(problem, "strerror", None) or str(problem)
+    return f"{why} in {root}; restore the file or mend the row"
 
 
 @dataclass

@@ -30,6 +30,7 @@ class Heard:
     looks: tuple[Look, ...] = ()
     picture: Callable[[], bytes] = field(default=bytes, compare=False)  # PNG
     why: str = ""
+    spoiled: bool = False  # the photograph itself can't be read; `why` has the remedy
 
 
 Boards = Callable[[str, Sequence[str]], Mapping[str, Heard]]  # of a folder, by name
@@ -115,7 +116,9 @@ def hear(
             seen = placard.joined(heard.looks, keys)
         own, rows = named(name), listed(name)
         own = rows[0] if rows and own == rows[0] else own  # which is held once
-        judged = placard.judge(own, rows, seen, why=why_silent(heard))
+        spoiled = heard is not None and heard.spoiled
+        told = {"why": why_silent(heard), "spoiled": spoiled}
+        judged = placard.judge(own, rows, seen, **told)
         key = heard.key if heard else ""
         readings.append(Reading(name, judged, own, rows, seen, key))
     return Hearing(readings, boards)

@@ -14,9 +14,10 @@ from pipelines.build.bench import Bench
 from pipelines.build.build import write
 from pipelines.build.city import city
 from pipelines.build.planned import Plan
+from pipelines.build.stages import read
 from pipelines.index import asked, manifest, source
 from pipelines.index.asked import Asked, ask
-from pipelines.index.plan import plan
+from pipelines.index.plan import PhotoRef, plan
 from pipelines.models import Models
 from pipelines.store import Store
 from pipelines.store.versions import Versions
@@ -92,6 +93,15 @@ def test_photos_that_only_unusable_rows_name_are_counted_once(store: Store) -> N
     assert (todo.photos, todo.unplaced) == (3, 2)
     refused = [r for r in asked.rows(store, "run") if isinstance(r, Rejection)]
     assert len(refused) == 5
+
+
+def test_photos_of_a_folder_that_is_gone_are_told_alike(tmp_path: Path) -> None:
+    """So that they fold into one line, which names the folder once."""
+    root = str(tmp_path / "gone")
+    told = [read(PhotoRef(root, name, ())) for name in ("a.jpg", "more/b.jpg")]
+    (detail,) = {one.detail for one in told if isinstance(one, Rejection)}
+    assert detail.count(root) == 1
+    assert "was the folder moved or renamed?" in detail
 
 
 def graph(store: Store, rows: int) -> int:
