@@ -49,6 +49,10 @@ def corrections_command(
         note = f" ({one.note})" if one.note else ""
         text = f"{words}{note}; done again: {one.again}"
         voice.say("correction", text, **vars(one), again=one.again)
+    for old, by in given.superseded:
+        words = f"{old.row}: {old.what} of {old.subject} is superseded by {by}"
+        facts = {"row": old.row, "what": old.what, "subject": old.subject, "by": by}
+        voice.say("superseded", words, **facts)
     for why in made.rejections:
         words = f"rejected {why.key}: {why.reason}: {why.detail}"
         facts = {"key": why.key, "reason": why.reason, "detail": why.detail}

@@ -164,6 +164,7 @@ class Corrections:
     given: tuple[Correction, ...] = ()
     rejections: tuple[Rejection, ...] = ()
     sha256: str = ""  # empty: there are none
+    superseded: tuple[tuple[Correction, str], ...] = ()  # and by which row
 
     @property
     def unreadable(self) -> tuple[Rejection, ...]:
@@ -194,6 +195,7 @@ def taken(files: Iterable[tuple[str, Callable[[], bytes]]]) -> Corrections:
     """Read files one after the other, as if they were one."""
     given: dict[tuple[str, str], Correction] = {}
     rejections: list[Rejection] = []
+    earlier: list[Correction] = []
     digest, some = hashlib.sha256(), False
     for name, read_bytes in files:
         some = True
@@ -212,13 +214,16 @@ def taken(files: Iterable[tuple[str, Callable[[], bytes]]]) -> Corrections:
             try:
                 cells = of_line(row) if isinstance(row, bytes) else row
                 one = Correction.model_validate(cells | {"row": key})
+                before = given.get(one.about)
+                earlier += [before] if before is not None else []
                 given[one.about] = one
             except ValueError as problem:
                 told = words.reason(problem)
                 bad = Rejection(key, "corrections", "nonsense correction", told)
                 rejections.append(bad)
     sha256 = digest.hexdigest() if some else ""
-    return Corrections(tuple(given.values()), tuple(rejections), sha256)
+    superseded = tuple((one, given[one.about].row) for one in earlier)
+    return Corrections(tuple(given.values()), tuple(rejections), sha256, superseded)
 
 
 def table(data: bytes) -> list[tuple[int, dict[str, Any]]]:

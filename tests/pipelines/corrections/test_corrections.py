@@ -5,10 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from nostalgin_core.records import Front
 from pipelines import corrections
 from pipelines.build.corrected import corrected
+from pipelines.cli import app
 from pipelines.corrections.corrections import Corrections
 from pipelines.index import manifest, source
 from pipelines.index.manifest import Unusable
@@ -78,6 +80,22 @@ def test_a_board_s_reading_is_a_key_and_the_later_counts(tmp_path: Path) -> None
     given = read(tmp_path, "5_1.png,,,placard,5-3,", "5_1.png,,,key,5-2,")
     (change,) = corrections.applied(ROWS, given).changes
     assert change.after == "5-2"
+
+
+def test_an_earlier_row_about_the_same_is_told_with_the_one_that_counts(
+    tmp_path: Path,
+) -> None:
+    city = tmp_path / "city"
+    city.mkdir()
+    cells = [manifest.row_of(r.photo, r.front, root="", credit="") for r in ROWS]
+    manifest.write(Store(str(city)), cells)
+    widths = [f",5-2-0,,width_m,{value}," for value in (6, 7, 8)]
+    given = read(city, widths[0], ",5-1-0,,width_m,9,", *widths[1:])
+    rows = [f"corrections.csv row {number}" for number in (2, 4, 5)]
+    told = [(old.row, by) for old, by in given.superseded]
+    assert told == [(rows[0], rows[2]), (rows[1], rows[2])]
+    result = CliRunner().invoke(app, ["corrections", str(city)])
+    assert f"{rows[0]}: width_m of 5-2-0 is superseded by {rows[2]}" in result.output
 
 
 def test_a_width_is_known_no_longer_assumed(tmp_path: Path) -> None:
