@@ -95,10 +95,17 @@ def of_cells(cells: Mapping[str, Any], path: Path) -> Profile:
     return Profile(path.stem, naming, board.present, board.pattern or "")
 
 
+def numbered(place: int) -> str:
+    """Count a place in a list as people do."""
+    return f"number {place + 1}"
+
+
 def reason(problem: ValidationError) -> str:
     """Tell the first key that is wrong, why, and the remedy."""
     first = problem.errors(include_url=False, include_input=False)[0]
-    where = ".".join(map(str, first["loc"]))
+    where = ".".join(
+        one if isinstance(one, str) else numbered(one) for one in first["loc"]
+    )
     where = where if len(where) <= LONGEST_KEY else f"{where[:LONGEST_KEY]}..."
     words = REMEDIES.get(first["type"], first["msg"].removeprefix("Value error, "))
     return f"{where}: {words}"

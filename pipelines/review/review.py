@@ -26,6 +26,8 @@ from pipelines.store.versions import Versions
 
 SHOWN_PX: Final = 900  # the longest side of a photograph on the page
 MOST_OF_A_KIND: Final = 50  # findings
+SOME: Final = 8  # blocks that a message names
+LONGEST: Final = 40  # letters of a block's name there
 ASIDE: Final = (
     "move it elsewhere to begin a new one: the page saves the old lines with the new"
 )
@@ -73,7 +75,7 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
     """Gather what is to be looked at; nothing is written.
 
     Raises:
-        Unusable: if the manifest can't be read.
+        Unusable: if the manifest can't be read, or has none of a block that is wanted.
         Unkept: if the page could not save the corrections that are given already.
     """
     given = lines(store)
@@ -84,6 +86,7 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
         kinds[one.kind].append(one)
     read = readings(store)
     made = corrected(store)
+    there(store, blocks, made.rows)
     rows: dict[str, list[Row]] = defaultdict(list)
     for row in made.rows:
         if row.photo and (not blocks or (row.front and row.front.block in blocks)):
@@ -110,6 +113,21 @@ def review(store: Store, *, blocks: Sequence[str] = (), most: int) -> Review:
         warned=told(store, made.rows),
         given=given,
     )
+
+
+def there(store: Store, blocks: Sequence[str], rows: Sequence[Row]) -> None:
+    """Insist on blocks that the manifest has.
+
+    Raises:
+        Unusable: if it has one of them not; it names some that it has.
+    """
+    known = {row.front.block for row in rows if row.front}
+    strange = [one for one in blocks if one not in known]
+    if strange:
+        some = sorted(known, key=manifest.natural)[:SOME]
+        shown = ", ".join(one[:LONGEST] for one in some) or "none"
+        words = f"has no block {strange[0][:LONGEST]!r}: its first are {shown}"
+        raise manifest.Unusable(f"{store.root}/{manifest.CSV} {words}")
 
 
 def corrected(store: Store) -> corrections.Applied:

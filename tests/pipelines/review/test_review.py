@@ -115,6 +115,12 @@ def test_photos_beyond_the_most_are_counted(other: Path) -> None:
     assert page(other, "--block", 6).count('<article class="photo"') == 1
 
 
+def test_a_block_that_is_not_there_is_told(other: Path) -> None:
+    result = CliRunner().invoke(app, ["review", str(other), "--block", "12345"])
+    assert result.exit_code == 1
+    assert "has no block '12345': its first are 5, 6" in result.output
+
+
 def test_a_quiet_one_writes_the_page_alone_and_tells_nothing(other: Path) -> None:
     before = {path for path in other.rglob("*") if path.is_file()}
     assert nostalgin("review", other, "--quiet").output == ""
