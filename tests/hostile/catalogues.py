@@ -58,6 +58,7 @@ def broken() -> dict[str, tuple[bytes, str]]:
     """List tables that can't be read at all, with what is told of each."""
     cell = "a" * 10_000_000
     utf8, no_row = "save it as CSV in UTF-8", "no row that makes"
+    unknown = "no column that is known"
     return {
         "UTF-16, cut": (TABLE.encode("utf-16")[:-1], utf8),
         "two encodings": ("Stra\u00dfe\n".encode() + b"Caf\xe9\n", "mend that line"),
@@ -67,21 +68,19 @@ def broken() -> dict[str, tuple[bytes, str]]:
         "line breaks alone": (b"\n\r\n\n" * 99, no_row),
         "zeros": (bytes(4096), ""),
         "columns alone": (HEAD.encode(), no_row),
-        "no column known": (b"a,b\n1,2\n", no_row),
-        "no columns": (ROW.encode().replace(b"1,10", b"3,10") * 2, no_row),
+        "no column known": (b"a,b\n1,2\n", unknown),
+        "no columns": (ROW.encode().replace(b"1,10", b"3,10") * 2, unknown),
         "block missing": (b"photo,lot\nx.png,1\n", "no block"),
         "lot missing": (b"photo,block\nx.png,1\n", "no lot"),
         "twin columns": (f"photo,{TABLE}".encode(), "two columns 'photo'"),
         "unclosed quote": ((TABLE + '5_2.png,5,2,"Elm\n').encode(), "is no CSV"),
         "letters after a quote": ((TABLE + '"5"_2.png,5,2\n').encode(), "is no CSV"),
         "unclosed quote of 10 MB": ((TABLE + f'"{cell}').encode(), "is no CSV"),
-        "semicolons": (TABLE.replace(",", ";").encode(), "save it with commas"),
-        "tabs": (TABLE.replace(",", "\t").encode(), "save it with commas"),
         "bars": (TABLE.replace(",", "|").encode(), "save it with commas"),
-        "page": (b"<!DOCTYPE html><html><body>404</body></html>\n", no_row),
+        "page": (b"<!DOCTYPE html><html><body>404</body></html>\n", unknown),
         "picture": (painted.photo(), utf8),
         "workbook": (workbook(), ""),
-        "object": (b'{"photo": "5_1.png", "block": 5, "lot": 1}\n', no_row),
+        "object": (b'{"photo": "5_1.png", "block": 5, "lot": 1}\n', unknown),
         "program": (b"\x7fELF\x02\x01\x01" + bytes(range(256)), utf8),
     }
 
@@ -106,6 +105,8 @@ def sound() -> dict[str, bytes]:
     return {
         "mark at the start": b"\xef\xbb\xbf" + TABLE.encode(),
         "two marks at the start": b"\xef\xbb\xbf" * 2 + TABLE.encode(),
+        "semicolons": TABLE.replace(",", ";").encode(),
+        "tabs": TABLE.replace(",", "\t").encode(),
         "line ends of another system": TABLE.replace("\n", "\r").encode(),
         "both line ends": TABLE.replace("\n", "\r\n").encode(),
         "no line end": TABLE.rstrip().encode(),

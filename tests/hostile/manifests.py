@@ -148,7 +148,7 @@ def read_as_parquet() -> list[Case]:
         "zeros in its footer": (zeroed(-120, -56), ("manifest",)),
         "picture": (catalogues.painted.photo(), told),
         "no rows": (encoded(table().slice(0, 0)), ("it has no rows",)),
-        "no columns": (encoded(pa.table({})), ("lacks the columns",)),
+        "no columns": (encoded(pa.table({})), ("is empty", "delete it")),
         "block missing": (encoded(table(block=None)), ("lacks the columns block",)),
         "3000 columns": (long_schema(), ("lacks the columns",)),
         "text that is no UTF-8": (encoded(table(block=unspelt())), ("manifest",)),

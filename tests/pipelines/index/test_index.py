@@ -143,7 +143,7 @@ def test_a_nonsense_catalogue_is_refused_by_name(photos: Path, text: str) -> Non
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("photo;block;lot\nb/993_1.jpg;993;1\n", "save it with commas"),
+        ("photo|block|lot\nb/993_1.jpg|993|1\n", "save it with commas"),
         ("block,lot\n993,\n", "row 2: no lot: fill in the cell"),
         ("block,lot\n993,1,7\n", "row 2: too many cells"),
     ],

@@ -53,7 +53,7 @@ def test_a_row_that_makes_no_sense_is_named_and_spoils_no_other(
         (b"", "empty"),
         (b"block,lon,lat\n", "empty"),
         (b"a,b\n1,2\n", "write block, lon, lat"),
-        (b"block;lon;lat\n1;2;3\n", "commas"),
+        (b"block|lon|lat\n1|2|3\n", "commas"),
         (b"\xff\xfe", "UTF-8"),
     ],
 )
