@@ -210,6 +210,8 @@ def doubts(side: Along, law: Law, *, by_lot: bool) -> Doubts:
         )
     some = [side.spots[side.steady[place]] for place in doubtful]
     for spot in some:
-        others = ", ".join(one.told() for one in some if one is not spot)
+        others = ", ".join(
+            f"{one.told()} in row {one.row}" for one in some if one is not spot
+        )
         told.append((spot, f"its number and those of {others} contradict each other"))
     return told

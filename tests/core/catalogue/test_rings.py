@@ -250,6 +250,23 @@ def test_a_street_that_is_changed_is_told_with_the_row_and_one_that_stays_too() 
     assert "it is left as written; mend row 9" in last
 
 
+def test_lots_that_contradict_each_other_name_all_their_rows() -> None:
+    """As block 993's lots 22, 25 and 29 do: 115-119, 105 and 111."""
+    numbers = {"2": "133", "3": "137"}  # of lots 1 to 3: 139, 133, 137
+    rows = [
+        replace(one, address=numbers.get(one.lot, one.address), row=row)
+        for row, one in enumerate(PLAIN, 20)
+    ]
+    _, told = rings.fronts(rows)
+    found = [line for line in told if "contradict each other" in line]
+    assert len(found) > 1
+    for line in found:
+        own = int(line.partition("): row ")[2].partition(":")[0])
+        others = {int(x.split()[0].strip(",")) for x in line.split(" in row ")[1:]}
+        assert others and own not in others
+        assert f"mend row {own} if it is wrong" in line
+
+
 def test_two_lots_with_one_key_are_both_kept_and_told() -> None:
     twice = entries(("3", "West 10 Street", "131-135"), ("3", "West 10 Street", "129"))
     twice = [replace(one, row=90 + k) for k, one in enumerate(twice)]
