@@ -24,6 +24,12 @@ class Corrected:
     quads: dict[str, str] = field(default_factory=dict)  # the same
     streets: Streets = field(default_factory=Streets)  # told with the city's places
 
+    @property
+    def rejected(self) -> int:
+        """Count the corrections that change nothing."""
+        refused = (one for one in self.rows or () if isinstance(one, Rejection))
+        return sum(one.stage == "corrections" for one in refused)
+
     def drawn_on(self, name: str) -> tuple[str, str]:
         """Give what somebody drew on a photo: an outline and a quad."""
         return self.outlines.get(name, ""), self.quads.get(name, "")

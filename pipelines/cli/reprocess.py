@@ -171,14 +171,20 @@ def tell(plan: "Plan", voice: Voice) -> None:
 
 def lines(known: dict[str, Any]) -> list[str]:
     """Tell a plan to people."""
+    refused = known["corrections_rejected"]
+    words = f"{refused} corrections are rejected: `nostalgin corrections` tells why"
+    last = [words] if refused else []
     if not (known["photos"] or known["blocks"] or known["moved"]):
-        return [f"nothing is stale: run {known['before']} is what is asked for"]
+        said = f"nothing is stale: run {known['before']} is what is asked for"
+        return [said, *last]
     causes = ", ".join(f"{n} {name}" for name, n in known["causes"].items())
     rows = ", ".join(f"{n} by {name}" for name, n in known["blocks_by_cause"].items())
+    photos = known["photos_asked"] + known["photos_gone"]
+    blocks = known["blocks_asked"] + known["blocks_gone"]
     said = [
-        f"{known['photos']} of {known['photos_asked']} photographs are to be redone"
+        f"{known['photos']} of {photos} photographs are to be redone"
         + (f" ({causes})" if causes else ""),
-        f"{known['blocks']} of {known['blocks_asked']} blocks are looked at again"
+        f"{known['blocks']} of {blocks} blocks are looked at again"
         + (f" ({rows})" if rows else ""),
     ]
     if known["moved"]:
@@ -191,4 +197,4 @@ def lines(known: dict[str, Any]) -> list[str]:
         )
     if known["later"]:
         said.append(f"{known['later']} stale photographs are left for the next time")
-    return said
+    return [*said, *last]

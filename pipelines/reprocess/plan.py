@@ -70,6 +70,18 @@ class Plan:
             return {}
         return {"cpu_seconds": self.cpu_seconds, "seconds": self.seconds}
 
+    @property
+    def photos_gone(self) -> int:
+        """Count the stale photographs that nobody asks for any more."""
+        removed = self.stale.photos[self.stale.causes == CAUSES.index("removed")]
+        return len(np.setdiff1d(removed, self.stale.side.names))
+
+    @property
+    def blocks_gone(self) -> int:
+        """Count the blocks that nobody asks for any more."""
+        known = np.array(sorted(self.stale.side.digests), np.uint64)
+        return len(np.setdiff1d(self.stale.blocks["rows"], known))
+
     def told(self) -> dict[str, Any]:
         """Give the plan as plain values."""
         causes = {name: self.stale.count(name) for name in CAUSES}
@@ -78,9 +90,12 @@ class Plan:
             "before": self.before.run,
             "photos": self.photos,
             "photos_asked": self.stale.photos_asked,
+            "photos_gone": self.photos_gone,
             "later": self.later,
             "blocks": self.blocks,
             "blocks_asked": self.blocks_asked,
+            "blocks_gone": self.blocks_gone,
+            "corrections_rejected": self.now.mended.rejected,
             "causes": {name: n for name, n in causes.items() if n},
             "blocks_by_cause": {name: n for name, n in blocks.items() if n},
             "moved": self.stale.moved,

@@ -1,5 +1,6 @@
 """What the command tells of what it found and did."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -23,3 +24,24 @@ def test_what_was_made_again_is_summed_up(city: Path, told: tuple[str, ...]) -> 
     assert done.exit_code == 0, done.output
     assert "artifacts alone were made" in done.output or told
     assert shown(city) == before
+
+
+def test_a_plan_tells_how_many_corrections_are_rejected(city: Path) -> None:
+    assert "corrections" not in run(city, "reprocess", "--dry-run").output
+    lines = "building_id,what,value\n9-9,height_m,18\n9-8,height_m,18\n"
+    (city / "corrections.csv").write_text(lines)
+    said = run(city, "reprocess", "--dry-run").output
+    assert "2 corrections are rejected: `nostalgin corrections` tells why" in said
+    told = json.loads(run(city, "reprocess", "--dry-run", "--json").stdout)
+    assert told["corrections_rejected"] == 2
+
+
+def test_what_is_gone_is_counted_with_what_is_asked_for(city: Path) -> None:
+    path = city / "manifest.csv"
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text(
+        "".join(one for one in lines if "5_" not in one and ",5," not in one)
+    )
+    said = run(city, "reprocess", "--dry-run", "--no-index").output
+    assert "3 of 4 photographs are to be redone (3 removed)" in said
+    assert "1 of 2 blocks are looked at again (1 by rows)" in said
