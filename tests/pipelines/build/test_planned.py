@@ -19,7 +19,8 @@ from pipelines.index import asked, manifest, source
 from pipelines.index.asked import Asked, ask
 from pipelines.index.plan import PhotoRef, plan
 from pipelines.models import Models
-from pipelines.store import Store
+from pipelines.reprocess.reprocess import written
+from pipelines.store import Store, runs
 from pipelines.store.versions import Versions
 
 FRONT = Front("1-1-0", "1", "1", 0, 0, 0, "Elm Street", "1", 8.0, None, False)  # noqa: FBT003
@@ -93,6 +94,9 @@ def test_photos_that_only_unusable_rows_name_are_counted_once(store: Store) -> N
     assert (todo.photos, todo.unplaced) == (3, 2)
     refused = [r for r in asked.rows(store, "run") if isinstance(r, Rejection)]
     assert len(refused) == 5
+    groups = store.read_groups(runs.table_path("run", asked.ASKED))
+    again = written(store, "again", groups, "")
+    assert (again.photos, again.unplaced) == (3, 2)
 
 
 def test_photos_of_a_folder_that_is_gone_are_told_alike(tmp_path: Path) -> None:
