@@ -23,12 +23,7 @@ class Corrected:
     outlines: dict[str, str] = field(default_factory=dict)  # of fronts, by photo
     quads: dict[str, str] = field(default_factory=dict)  # the same
     streets: Streets = field(default_factory=Streets)  # told with the city's places
-
-    @property
-    def rejected(self) -> int:
-        """Count the corrections that change nothing."""
-        refused = (one for one in self.rows or () if isinstance(one, Rejection))
-        return sum(one.stage == "corrections" for one in refused)
+    rejected: int = 0  # corrections that change nothing
 
     def drawn_on(self, name: str) -> tuple[str, str]:
         """Give what somebody drew on a photo: an outline and a quad."""
@@ -110,4 +105,5 @@ def corrected(store: Store, there: Source) -> Corrected:
         dict(made.targets_px),
         dict(made.outlines),
         dict(made.quads),
+        rejected=len(made.rejections),
     )

@@ -30,7 +30,9 @@ def test_a_plan_tells_how_many_corrections_are_rejected(city: Path) -> None:
     assert "corrections" not in run(city, "reprocess", "--dry-run").output
     lines = "building_id,what,value\n9-9,height_m,18\n9-8,height_m,18\n"
     (city / "corrections.csv").write_text(lines)
-    said = run(city, "reprocess", "--dry-run").output
+    done = run(city, "reprocess", "--dry-run")
+    said = done.output
+    assert done.exit_code == 0, repr(done.exception)
     assert "2 corrections are rejected: `nostalgin corrections` tells why" in said
     told = json.loads(run(city, "reprocess", "--dry-run", "--json").stdout)
     assert told["corrections_rejected"] == 2
