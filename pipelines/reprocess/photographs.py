@@ -20,8 +20,7 @@ from pipelines.index.roots import rooted
 from pipelines.reprocess.now import Now
 from pipelines.reprocess.published import Published
 from pipelines.reprocess.verdicts import STAGES
-from pipelines.store import Damaged, Shelf, Store
-from pipelines.store.disk import absent
+from pipelines.store import Damaged, Shelf, Store, absent
 from pipelines.store.versions import Versions
 
 SMALL: Final = "thumbnail"
