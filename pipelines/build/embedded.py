@@ -37,6 +37,10 @@ class WorkerLost(RuntimeError):  # noqa: N818 - it reads as what it is about
     """A worker that was killed: for want of memory, it may be."""
 
 
+class Woken(BaseException):
+    """The main thread need not wait any longer."""
+
+
 def runner(options: PipelineOptions) -> FnApiRunner | None:
     """Make the embedded runner where processes are asked of it, and change its options.
 
@@ -83,15 +87,19 @@ def ending_with_a_worker() -> Iterator[None]:
         first = not lost.is_set()
         lost.set()
         if first and not over.is_set():
-            signal.pthread_kill(main.ident, signal.SIGINT)
+            signal.pthread_kill(main.ident, signal.SIGUSR1)
+
+    def woken(*_: object) -> None:
+        raise Woken
 
     if threading.current_thread() is not main:
         yield
         return
+    before = signal.signal(signal.SIGUSR1, woken)
     with mock.patch.object(threading, "excepthook", hook):
         try:
             yield
-        except (KeyboardInterrupt, RuntimeError) as problem:
+        except (Woken, RuntimeError) as problem:
             over.set()
             if not lost.is_set() and CLOSED not in str(problem):
                 raise
@@ -99,6 +107,7 @@ def ending_with_a_worker() -> Iterator[None]:
             raise WorkerLost("a worker's process was killed") from None
         finally:
             over.set()
+            signal.signal(signal.SIGUSR1, before)
 
 
 @contextlib.contextmanager

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from pipelines.cli.launch import ended, told
+from pipelines.cli.launch import ended, patient, told
 from pipelines.console import Voice, errors, fail, hushed
 from pipelines.stopping import Stopped, heeded
 
@@ -51,10 +51,10 @@ def asking(
         voice.say("boards", words, photos=len(names))
         plain = (Unlocked, build.Lost, build.Unrun)
         try:
-            with heeded(), hushed(errors, plain=(*plain, OSError, Stopped)):
+            with heeded(patient), hushed(errors, plain=(*plain, OSError, Stopped)):
                 return build.boards(options, root, names)
         except Stopped as problem:
-            raise ended(str(problem)) from problem
+            raise ended(problem) from problem
         except plain as problem:
             raise fail(str(problem)) from problem
 

@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+import signal
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -9,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from pipelines import stopping
 from pipelines.console import Voice, Watch, errors, fail, hushed, summed, unwritable
 from pipelines.stopping import Stopped, heeded
 
@@ -75,17 +75,24 @@ def failing(city: str) -> Iterator[None]:
     plain = (Unusable, Unlocked, Foreign, ViewerMissingError, build.Lost, build.Unrun)
     plain = (*plain, Busy, Damaged)
     try:
-        with heeded(), hushed(errors, plain=(*plain, OSError, Stopped)):
+        with heeded(patient), hushed(errors, plain=(*plain, OSError, Stopped)):
             yield
     except Stopped as problem:
-        raise ended(str(problem)) from problem
+        raise ended(problem) from problem
     except plain as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(city, problem) from problem
 
 
-def ended(why: str) -> typer.Exit:
+def patient(number: int) -> None:
+    """Tell whoever pressed Ctrl-C what comes of it, and how to end at once."""
+    if number == signal.SIGINT:
+        words = "ending after what is in flight; press Ctrl-C again to end at once"
+        errors.print(words, style="dim")
+
+
+def ended(why: Stopped) -> typer.Exit:
     """Say that a run was asked to end, and end with the code that tells it."""
-    fail(why)
-    return typer.Exit(stopping.CODE)
+    fail(str(why))
+    return typer.Exit(why.code)

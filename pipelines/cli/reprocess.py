@@ -15,6 +15,7 @@ from pipelines.cli.launch import (
     JsonLines,
     ModelsFolder,
     failing,
+    patient,
     told,
 )
 from pipelines.console import Quiet, Voice, Watch, errors, fail, summed, unwritable
@@ -75,7 +76,7 @@ def reprocess_command(
     if dry_run:
         tell(looked(city, voice, str(models or ""), **asked), voice)
         return
-    with stopping.heeded():
+    with stopping.heeded(patient):
         done = redone(city, voice, str(models or ""), context.args, **asked)
     if done.report is not None and done.report.held:
         raise typer.Exit(TOO_MANY_REJECTIONS)

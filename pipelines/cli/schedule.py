@@ -45,7 +45,7 @@ class Wall:
         """Tell whether somebody asked to end."""
         return self._ended.is_set()
 
-    def end(self) -> None:
+    def end(self, _: int) -> None:
         """Ask to end."""
         self._ended.set()
 
@@ -96,7 +96,7 @@ def schedule_command(
                 waited(timed, clock.now(), voice)
     except OSError as problem:
         raise unwritable(city, problem) from problem
-    if once or stopping.CODE in outcomes[-1:]:
+    if once or set(outcomes[-1:]) & set(stopping.CODES):
         raise typer.Exit(outcomes[-1] if outcomes else 0)
 
 
@@ -164,4 +164,4 @@ def ended(problem: typer.Exit) -> str:
 
     if isinstance(problem.__cause__, Busy):
         return "busy"
-    return "stopped" if problem.exit_code == stopping.CODE else "failed"
+    return "stopped" if problem.exit_code in stopping.CODES else "failed"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from pipelines.stopping import CODE
+from pipelines.stopping import CODES
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, built, copied, tree
 
@@ -51,16 +51,24 @@ def awaited(there: Callable[[], object], one: subprocess.Popen[str]) -> None:
         time.sleep(0.01)
 
 
-def stopped(city: Path, command: Sequence[str], *, all_hear: bool, most: int) -> None:
+def stopped(
+    city: Path,
+    command: Sequence[str],
+    *,
+    all_hear: bool,
+    most: int,
+    how: signal.Signals = signal.SIGTERM,
+) -> None:
     """Ask a run to end at its first artifact of `matte`: it makes `most` more."""
     one = started(city, *command)
     awaited(lambda: artifacts(city, "matte"), one)
     before = len(artifacts(city, ""))
     if all_hear:
-        os.killpg(one.pid, signal.SIGTERM)
+        os.killpg(one.pid, how)
     else:
-        one.send_signal(signal.SIGTERM)
-    assert ended(one) == CODE
+        one.send_signal(how)
+    assert ended(one) == 128 + how
+    assert 128 + how in CODES
     assert len(artifacts(city, "")) - before <= most
     assert not (city / "CURRENT").exists()
     assert not list(city.rglob("*.partial"))
@@ -89,6 +97,30 @@ def test_a_build_ends_after_what_is_in_flight_and_the_next_goes_on(
     # What is in flight, and what came between the count and the signal.
     stopped(other, command, all_hear=all_hear, most=workers + 1)
     assert_the_next_goes_on(other, city, command)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_ctrl_c_ends_a_build_in_words_and_the_next_goes_on(
+    city: Path, tmp_path: Path, workers: int
+) -> None:
+    other = copied(city, tmp_path)
+    command = ("build", f"--direct_num_workers={workers}")
+    how = signal.SIGINT  # which a terminal sends to all processes
+    stopped(other, command, all_hear=True, most=workers + 1, how=how)
+    assert_the_next_goes_on(other, city, command)
+
+
+def test_ctrl_c_twice_ends_a_build_at_once(city: Path, tmp_path: Path) -> None:
+    other = copied(city, tmp_path)
+    one = started(other, "build", "--direct_num_workers=2")
+    awaited(lambda: artifacts(other, "segment"), one)
+    for _ in range(2):
+        os.killpg(one.pid, signal.SIGINT)
+        time.sleep(0.2)
+    said = one.communicate(timeout=WAIT_S)[1]
+    assert one.returncode in (-signal.SIGINT, *CODES)
+    assert "Traceback" not in said
+    assert "press Ctrl-C again" in said
 
 
 def test_a_scheduled_run_that_was_stopped_is_due_again(
