@@ -20,7 +20,8 @@ from tests.pipelines import painted
 GOOD = ("good/5_1.png", "good/5_2.png")
 # Photographs all the same, of which a few are taken as far as they go; it takes time.
 TAKEN = ("float_nan.tif", "exif_rubbish.jpg", "turned_6.jpg", "black.png", "ribbon.png")
-MADE = {"manifest.csv", "manifest.parquet", "readings.parquet", "readings"}
+MANIFEST = {"manifest.csv", "manifest.parquet", "indexed.json", "profile.toml"}
+MADE = MANIFEST | {"readings.parquet", "readings", "warnings.parquet"}
 BUILT = MADE | {"artifacts", "runs", "site", "CURRENT", "metrics.prom"}
 Events = dict[str, list[dict[str, Any]]]  # rejections, by what each names
 

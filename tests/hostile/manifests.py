@@ -45,10 +45,13 @@ class HostileRow:
     cells: dict[str, str]
     reason: str = ""
 
-    def said(self) -> str:
-        """Give what an unreadable photograph is told by: its root and name."""
+    def told_by(self, key: str, detail: str) -> bool:
+        """Tell whether a rejection names an unreadable photograph, and its root."""
         here = {"root": "", "photo": "good/5_1.png"} | self.cells
-        return f"{here['root']}/{here['photo']}".strip()
+        ends = (
+            f"{here['root'].strip()}{end}" for end in ":;"
+        )  # a root may be relative
+        return key == here["photo"].strip() and any(end in detail for end in ends)
 
 
 def built(write: Callable[[Path], object]) -> Make:
