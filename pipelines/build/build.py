@@ -159,12 +159,12 @@ def carried_out(
 
 
 def recognised(asked_for: Prepared, report: Report) -> Report:
-    """Take a run that came to what is shown for the one that is shown."""
+    """Take a run that came to what an earlier one did for that."""
     store, first = asked_for.bench.store, asked_for.first
-    shown = twin.same_as_shown(store, first, report.run) if first else ""
-    if not shown:
+    same = twin.same_as_earlier(store, first, report.run) if first else ""
+    if not same:
         return report
-    return replace(report, run=shown, rejections=Rejections(store, shown))
+    return replace(report, run=same, rejections=Rejections(store, same))
 
 
 def made_alone(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> Report:

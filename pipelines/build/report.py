@@ -14,14 +14,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from pipelines import site
 from pipelines.index import asked
 from pipelines.index.asked import Asked, short
 from pipelines.index.row import Row
 from pipelines.store import Store, runs
 from pipelines.store.versions import Versions
 
-PUBLISHED: Final = "published.json"
 MADE: Final = (  # which column of which table names the artifacts of which stage
     ("facades", "elevations", "rectify"),
     ("borrowed", "borrowed", "borrow"),
@@ -196,13 +194,13 @@ def columns(
 def remember(store: Store, report: Report) -> None:
     """Write beside a run's tables how much of it was published."""
     told = {"photos": report.photos, "shown_share": report.shown_share}
-    store.write_bytes(f"runs/{report.run}/{PUBLISHED}", json.dumps(told).encode())
+    store.write_bytes(f"runs/{report.run}/{runs.PUBLISHED}", json.dumps(told).encode())
 
 
 def shown_before(store: Store) -> float:
     """Read which share of its photos the published city shows; none: there is none."""
     try:
-        return float(of_shown(store, PUBLISHED)["shown_share"])
+        return float(of_shown(store, runs.PUBLISHED)["shown_share"])
     except (ValueError, KeyError, TypeError):
         return 0.0
 
@@ -215,7 +213,7 @@ def last_shown(store: Store) -> dict[str, Any]:
 def of_shown(store: Store, name: str) -> dict[str, Any]:
     """Read a record of the published run."""
     try:
-        run = store.read_bytes(site.CURRENT).decode().strip()
+        run = runs.shown(store)
         told = json.loads(store.read_bytes(f"runs/{run}/{name}"))
     except (OSError, ValueError):
         return {}

@@ -1,21 +1,20 @@
 """A run over what was asked for before never writes into the tables that are shown.
 
-It has a name of its own; if it comes to the same tables, it is the shown one again. So
-a run that fails, over photographs that can't be read say, spoils no earlier one.
+It has a name of its own; if it comes to the tables of an earlier one, it is that again.
+So a run that fails, over photographs that can't be read say, spoils none.
 """
 
 from collections.abc import Iterator
+from itertools import takewhile
 
-from pipelines import site
-from pipelines.build.report import PUBLISHED
-from pipelines.store import Store, key_of, runs
+from pipelines.store import Damaged, Store, key_of, runs
 
 PUBLISHING = frozenset({"places"})  # written when a run is shown
 
 
 def unshown(store: Store, first: str) -> str:
     """Give a run's name, or the next in its line that no shown run has."""
-    return next(one for one in line(first) if not was_shown(store, one))
+    return next(one for one in line(first) if not runs.was_shown(store, one))
 
 
 def line(first: str) -> Iterator[str]:
@@ -26,32 +25,22 @@ def line(first: str) -> Iterator[str]:
         name = key_of(name, "again")[:12]
 
 
-def was_shown(store: Store, run: str) -> bool:
-    """Tell whether a run was published once."""
-    return store.exists(f"runs/{run}/{PUBLISHED}")
-
-
-def same_as_shown(store: Store, first: str, run: str) -> str:
-    """Name the run that is shown, if it was over the same and tells the same; or ""."""
-    try:
-        shown = store.read_bytes(site.CURRENT).decode().strip()
-    except (OSError, ValueError):
-        return ""
-    earlier: set[str] = set()
-    for one in line(first):
-        if one == run:
-            break
-        earlier.add(one)
-    names = set(runs.SCHEMAS) - PUBLISHING
-    same = shown in earlier and all(alike(store, shown, run, one) for one in names)
-    return shown if same else ""
+def same_as_earlier(store: Store, first: str, run: str) -> str:
+    """Name the latest run over the same that was shown and tells the same; or ""."""
+    earlier = list(takewhile(lambda one: one != run, line(first)))
+    names = sorted(set(runs.SCHEMAS) - PUBLISHING)
+    for one in reversed(earlier):
+        if all(alike(store, one, run, name) for name in names):
+            return one
+    return ""
 
 
 def alike(store: Store, one: str, other: str, name: str) -> bool:
-    """Tell whether a table of two runs is the same, part by part."""
+    """Tell whether a table of two runs is the same, part by part; not if damaged."""
     if runs.part_names(store, one, name) != runs.part_names(store, other, name):
         return False
-    pairs = zip(
-        *(runs.each_part(store, run, name) for run in (one, other)), strict=True
-    )
-    return all(a.equals(b) for a, b in pairs)
+    tables = (runs.each_part(store, run, name) for run in (one, other))
+    try:
+        return all(a.equals(b) for a, b in zip(*tables, strict=True))
+    except (Damaged, FileNotFoundError):
+        return False

@@ -13,8 +13,8 @@ from nostalgin_core.arrays import Mask
 from nostalgin_core.records import Facade
 from pipelines import bounded
 from pipelines.corrections.shapes import Points
-from pipelines.store import Damaged, Store, tables
-from pipelines.store.refuse import CURRENT, record
+from pipelines.store import Damaged, Store, runs, tables
+from pipelines.store.refuse import record
 from pipelines.store.versions import Versions
 
 NUMBERS: Final = ("facade", "quad", "aspect", "reason")
@@ -42,7 +42,7 @@ class Found:
 def published(store: Store) -> Versions | None:
     """Read the versions of the run that is shown, if one is."""
     try:
-        run = store.read_bytes(CURRENT).decode().strip()
+        run = runs.shown(store)
         return Versions(**record(store, run)["versions"])
     except (OSError, KeyError, TypeError, UnicodeDecodeError):
         return None

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from pipelines.evaluate import Unmeasurable
-from pipelines.site import CURRENT
 from pipelines.store import Damaged, Store, runs
 
 
@@ -27,7 +26,7 @@ def evaluate(city: Path) -> dict[str, Any]:
     """
     store = Store(str(city))
     try:
-        run = store.read_bytes(CURRENT).decode().strip()
+        run = runs.shown(store)
         rows = runs.read_table(store, run, "borrowed")
     except (OSError, ValueError, Damaged) as problem:
         words = f"{city} tells of nothing borrowed: build it again ({problem})"

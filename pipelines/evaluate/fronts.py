@@ -16,7 +16,6 @@ from typing import Any, Final
 import numpy as np
 import shapely
 
-from pipelines import site
 from pipelines.evaluate import Unmeasurable, labels
 from pipelines.store import Store, runs
 
@@ -51,7 +50,7 @@ def evaluate(data: Path, city: Path, *, block: str = "") -> Row:
     lots = read_lots(data / "lots.json")
     store = Store(str(city))
     try:
-        run = store.read_bytes(site.CURRENT).decode().strip()
+        run = runs.shown(store)
         claims = runs.read_table(store, run, "claims")
         facades = runs.read_table(store, run, "facades")
     except (OSError, ValueError) as problem:

@@ -15,7 +15,6 @@ from statistics import median
 from typing import Any, Final
 
 from nostalgin_core.catalogue import from_file_name
-from pipelines import site
 from pipelines.evaluate import Unmeasurable
 from pipelines.store import Store, runs
 
@@ -37,7 +36,7 @@ def evaluate(data: Path, city: Path) -> dict[str, Any]:
     truth = counted(data / "storeys.csv")
     store = Store(str(city))
     try:
-        run = store.read_bytes(site.CURRENT).decode().strip()
+        run = runs.shown(store)
         built = runs.read_table(store, run, "buildings")
     except (OSError, ValueError) as problem:
         raise Unmeasurable(f"{city} has no finished run: build it first") from problem

@@ -18,7 +18,6 @@ import numpy as np
 from nostalgin_core.address import plain_name
 from nostalgin_core.city import Move
 from nostalgin_core.records import Front
-from pipelines import site
 from pipelines.evaluate import Unmeasurable, heights
 from pipelines.evaluate.grounds import (
     Stretch,
@@ -47,7 +46,7 @@ def evaluate(data: Path, city: Path) -> dict[str, Any]:
     """
     store = Store(str(city))
     try:
-        run = store.read_bytes(site.CURRENT).decode().strip()
+        run = runs.shown(store)
         built = runs.read_table(store, run, "buildings")
         blocks = runs.read_table(store, run, "blocks")
         places = runs.read_table(store, run, "places")

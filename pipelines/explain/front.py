@@ -32,12 +32,11 @@ def explain_front(city: Path, front: str, out: Path) -> Json:
     Raises:
         Unshown: if no wall wears the front, or what it was made of is gone.
     """
-    from pipelines.site import CURRENT
     from pipelines.store import Damaged, Store, runs
 
     store = Store(str(city))
     try:
-        run = store.read_bytes(CURRENT).decode().strip()
+        run = runs.shown(store)
         row = chosen(runs.read_rows(store, run, "borrowed"), front)
         tiles, report = told(store, run, row)
     except (FileNotFoundError, Damaged) as problem:

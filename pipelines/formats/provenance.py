@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from pipelines.formats.published import Json, Published, Unexportable
 from pipelines.models import NETWORKS, PACKAGED, Models, Unlocked
-from pipelines.site import CURRENT, safe
+from pipelines.site import safe
 from pipelines.store import Damaged, Store, runs
 
 STAGES: Final = ("segment", "matte", "rectify", "borrow", "inpaint", "block")
@@ -33,7 +33,7 @@ def read(city: Path, site: Published) -> Json:
     """
     store = Store(str(city))
     try:
-        run = store.read_bytes(CURRENT).decode().strip()
+        run = runs.shown(store)
         noted = json.loads(store.read_bytes(f"runs/{run}/run.json"))
         names = ("photos", "buildings", "blocks")
         told = {name: runs.read_table(store, run, name) for name in names}

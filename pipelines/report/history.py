@@ -4,11 +4,9 @@ import json
 from dataclasses import dataclass
 from typing import Any, Final
 
-from pipelines import site
-from pipelines.store import Store
+from pipelines.store import Store, runs
 
 RUN: Final = "run.json"
-PUBLISHED: Final = "published.json"
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ def history(store: Store) -> list[Past]:
 def current(store: Store) -> str:
     """Name the run whose city is shown; "" if there is none."""
     try:
-        return store.read_bytes(site.CURRENT).decode().strip()
+        return runs.shown(store)
     except (OSError, ValueError):
         return ""
 
@@ -52,7 +50,7 @@ def current(store: Store) -> str:
 def past(store: Store, run: str, shown: str) -> Past:
     """Read what one run's folder tells."""
     told = read_json(store, f"runs/{run}/{RUN}")
-    published = read_json(store, f"runs/{run}/{PUBLISHED}")
+    published = read_json(store, f"runs/{run}/{runs.PUBLISHED}")
     return Past(
         run=run,
         began=str(told.get("began", "")),

@@ -9,7 +9,6 @@ from typing import Any, Final
 
 import pyarrow as pa
 
-from pipelines import site
 from pipelines.build import DIRECTED
 from pipelines.index.asked import ASKED
 from pipelines.store import Store, runs
@@ -69,7 +68,7 @@ class Published:
 def published(store: Store) -> Published:
     """Find the run whose city is shown."""
     try:
-        run = store.read_bytes(site.CURRENT).decode().strip()
+        run = runs.shown(store)
     except FileNotFoundError:
         return Published(store)
     return Published(store, run, record(store, run))

@@ -18,7 +18,6 @@ from pipelines.models import Models
 from pipelines.reprocess import merged
 from pipelines.reprocess.now import now
 from pipelines.reprocess.plan import Plan, planned
-from pipelines.reprocess.rollback import SHOWN
 from pipelines.reprocess.stale import CAUSES
 from pipelines.reprocess.waiting import told_of_both
 from pipelines.store import Store, held, key_of, runs
@@ -153,7 +152,7 @@ def prepared(plan: Plan, ours: CityOptions, run: str = "") -> Prepared:
 def named(plan: Plan) -> str:
     """Name the next run as a build would; if one of that name was shown, by its own."""
     name = plan.now.run
-    if not plan.now.store.exists(f"runs/{name}/{SHOWN}") and not plan.later:
+    if not runs.was_shown(plan.now.store, name) and not plan.later:
         return name
     files = np.isin(plan.stale.causes, [CAUSES.index(one) for one in OF_FILES])
     told = (plan.stale.photos[files], plan.stale.since_ns[files], plan.redone)

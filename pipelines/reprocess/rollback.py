@@ -18,7 +18,6 @@ from pipelines.store import Damaged, Store, held, runs
 from pipelines.store.refuse import began, record
 from pipelines.store.versions import Versions
 
-SHOWN: Final = "published.json"  # stands beside the tables of a run that was shown
 UNDECODED: Final = frozenset({"photo", "thumbnail"})  # no picture of these
 REMEDY: Final = (
     "restore it from a backup, or show another; to keep what the last N runs need, "
@@ -53,7 +52,7 @@ def rollback(store: Store, run: str, *, tell: Tell = build.silent) -> None:
 
 def shown(store: Store) -> list[str]:
     """Name the kept runs that were shown once, the latest first."""
-    names = [one for one in store.names("runs") if store.exists(f"runs/{one}/{SHOWN}")]
+    names = [one for one in store.names("runs") if runs.was_shown(store, one)]
     return sorted(names, key=lambda run: began(store, run), reverse=True)
 
 

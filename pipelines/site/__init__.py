@@ -5,12 +5,11 @@ Open `publish` first.
 """
 
 from pipelines.site.folder import Folder, Foreign, inside, recorded
-from pipelines.site.publish import CURRENT, claim, damaged, publish
+from pipelines.site.publish import claim, damaged, publish
 from pipelines.site.record import record
 from pipelines.site.site import ViewerMissingError, safe, thumbnail
 
 __all__ = [
-    "CURRENT",
     "Folder",
     "Foreign",
     "ViewerMissingError",

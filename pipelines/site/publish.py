@@ -21,7 +21,6 @@ from pipelines.site.placing import Placing, placing, spot
 from pipelines.store import Damaged, Store, runs
 from pipelines.store.versions import Versions
 
-CURRENT: Final = "CURRENT"
 SITE: Final = "site"
 
 
@@ -71,7 +70,7 @@ def publish(
             place=placed.origin,
             trusting=trusting,
         )
-    store.write_bytes(CURRENT, f"{run}\n".encode())
+    store.write_bytes(runs.CURRENT, f"{run}\n".encode())
     return notes
 
 

@@ -19,7 +19,6 @@ from pipelines.store.shelf import ARTIFACT, Shelf
 from pipelines.store.store import ARTIFACTS, Store
 from pipelines.store.versions import Versions
 
-CURRENT: Final = "CURRENT"
 DRAWN: Final = ("outline", "quad")  # columns of a run's photos
 # A stage whose artifacts these are, if runs of older cities had none; table; column.
 NAMED: Final = (
@@ -86,7 +85,7 @@ def chosen(store: Store, keep: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Part the runs into those to keep and the others: the published one is kept."""
     current = ""
     with contextlib.suppress(FileNotFoundError):
-        current = store.read_bytes(CURRENT).decode().strip()
+        current = runs.shown(store)
     there = sorted(store.names("runs"), key=lambda run: began(store, run), reverse=True)
     kept = [run for n, run in enumerate(there) if n < keep or run == current]
     return tuple(kept), tuple(run for run in there if run not in kept)

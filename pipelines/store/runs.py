@@ -10,6 +10,7 @@ alone. The table of a large archive is written in parts, as
 one photo or block stands in one part.
 """
 
+import errno
 import hashlib
 import json
 import math
@@ -32,7 +33,10 @@ def columns(**kinds: pa.DataType) -> pa.Schema:
     return pa.schema([pa.field(name, kind) for name, kind in kinds.items()])
 
 
+CURRENT: Final = "CURRENT"  # the file that names the run whose city is shown
+PUBLISHED: Final = "published.json"  # in a run's folder: it was shown once
 REDONE: Final = "redone"  # in a run's folder: tables of a part that is at work
+NAME: Final = re.compile(r"\w{1,64}")  # of a run
 TEXT, NUMBER, COUNT = pa.string(), pa.float64(), pa.int64()
 NUMBERS: Final = pa.list_(pa.float64())
 Part = tuple[int, int]  # which, from 0, of how many
@@ -135,6 +139,25 @@ def run_id(manifest_sha256: str, versions: Versions, shard: str) -> str:
     """Name a run by what was asked for."""
     built = {stage: one for stage, one in vars(versions).items() if stage != READER}
     return key_of(manifest_sha256, json.dumps(built), shard)[:12]
+
+
+def shown(store: Store) -> str:
+    """Name the run whose city is shown.
+
+    Raises:
+        FileNotFoundError: if none is.
+        OSError: if what should name it is damaged; its words have the remedy.
+    """
+    name = store.read_bytes(CURRENT).decode(errors="replace").strip()
+    if NAME.fullmatch(name) is None:
+        remedy = "it names no run: build again, or show one by reprocess --rollback"
+        raise OSError(errno.EIO, remedy, f"{store.root}/{CURRENT}")
+    return name
+
+
+def was_shown(store: Store, run: str) -> bool:
+    """Tell whether a run was published once."""
+    return store.exists(f"runs/{run}/{PUBLISHED}")
 
 
 def parts_of(rows: int) -> int:

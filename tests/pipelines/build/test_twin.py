@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from pipelines.store import Store, runs
 from tests.pipelines import painted
 from tests.pipelines.cities import built, tree
 
@@ -52,3 +53,28 @@ def test_a_run_that_comes_to_something_else_is_another_run(city: Path) -> None:
     assert all(after[name] == first[name] for name in tables)
     again = built(city, (*HERE, "--publish_anyway"))
     assert again.run == other.run
+
+
+def test_a_shown_run_whose_table_is_damaged_gives_way_to_one_that_is_whole(
+    city: Path,
+) -> None:
+    shown = (city / "CURRENT").read_text().strip()
+    table = city / f"runs/{shown}/facades.parquet"
+    data = table.read_bytes()
+    table.write_bytes(data[: len(data) // 2])
+    again = built(city, HERE)
+    assert again.run != shown
+    assert (city / "CURRENT").read_text().strip() == again.run
+    assert not again.held
+
+
+@pytest.mark.parametrize("spoilt", [b"", b"../../x"])
+def test_a_damaged_pointer_is_named_with_its_remedy_and_written_anew(
+    city: Path, spoilt: bytes
+) -> None:
+    shown = (city / "CURRENT").read_bytes()
+    (city / "CURRENT").write_bytes(spoilt)
+    with pytest.raises(OSError, match="build again"):
+        runs.shown(Store(str(city)))
+    built(city, HERE)
+    assert (city / "CURRENT").read_bytes() == shown

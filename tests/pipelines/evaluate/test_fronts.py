@@ -8,7 +8,6 @@ import cv2
 import numpy as np
 import pytest
 
-from pipelines import site
 from pipelines.evaluate import Unmeasurable, fronts
 from pipelines.store import Store, runs
 
@@ -55,7 +54,7 @@ def city(folder: Path, claims: list[dict[str, Any]]) -> Path:
     seen = [facade(n, x) for n, x in enumerate((2.0, 31.0, 60.0, 89.0))]
     runs.write_table(store, RUN, "facades", seen)
     runs.write_table(store, RUN, "claims", claims)
-    store.write_bytes(site.CURRENT, RUN.encode())
+    store.write_bytes(runs.CURRENT, RUN.encode())
     return folder / "city"
 
 

@@ -3,7 +3,6 @@ from typing import Any
 
 import pytest
 
-from pipelines import site
 from pipelines.evaluate import Unmeasurable, heights
 from pipelines.store import Store, runs
 
@@ -43,7 +42,7 @@ def measured(tmp_path: Path) -> dict[str, Any]:
         building("9", 20.0, 10.0, 70.0),  # nobody counted it
     ]
     runs.write_table(store, "r", "buildings", built)
-    store.write_bytes(site.CURRENT, b"r")
+    store.write_bytes(runs.CURRENT, b"r")
     return heights.evaluate(tmp_path, tmp_path / "city")
 
 
