@@ -64,9 +64,5 @@ def demo_command(
     for warning in made.warnings:
         voice.say("warning", f"warning: {warning}", warning=warning)
     built(str(folder), voice, beam=beam)
-    site = folder / "site"
-    voice.say(
-        "site", f"the site lies in {site}: nostalgin view {folder}", site=str(site)
-    )
     if browser and sys.stdout.isatty():
         view(folder, announced=not quiet)

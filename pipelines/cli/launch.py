@@ -60,6 +60,10 @@ def built(city: str, voice: Voice, **asked: Any) -> "Report":
     with failing(city):
         report = build.build(options, tell=voice.say, watch=partial(Watch, voice))
     summed(report, voice)
+    site = Path(city) / "site"
+    shown = not (voice.machine or report.held or asked.get("shard"))
+    if shown and (site / "site.json").is_file():  # of a machine, `done` is the last
+        voice.say("site", f"the site lies in {site}: nostalgin view {city}")
     return report
 
 

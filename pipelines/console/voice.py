@@ -90,7 +90,8 @@ def summed(report: "Report", voice: Voice) -> None:
     if report.healed:
         words = f"{report.healed} damaged artifacts were made again"
         voice.say("healed", words, artifacts=report.healed)
-    where = f"; all rejections are in runs/{report.run}/rejections.parquet"
+    table = f"runs/{report.run}/rejections.parquet"
+    where = f"; `nostalgin report` shows all rejections, {table} has them"
     voice.say(
         "done",
         f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
