@@ -23,8 +23,12 @@ RECORD = "https://archive.example/plate"
 def stood(width_m: float, height_m: float) -> Standpoint:
     """Paint a quad: a camera 1.6 m high, 20 m off, before the left third, tilted up."""
     tilt, turn = np.radians([8.0, -12.0])
-    up = np.array([[1, 0, 0], [0, np.cos(tilt), np.sin(tilt)], [0, -np.sin(tilt), np.cos(tilt)]])
-    round_ = np.array([[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]])
+    up = np.array(
+        [[1, 0, 0], [0, np.cos(tilt), np.sin(tilt)], [0, -np.sin(tilt), np.cos(tilt)]]
+    )
+    round_ = np.array(
+        [[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]]
+    )
     front_from_camera = np.diag([1.0, -1.0, -1.0]) @ round_ @ up
     lens = np.array([[640.0, 0, 305.0], [0, 640.0, 390.0], [0, 0, 1]])
     roof = height_m / width_m

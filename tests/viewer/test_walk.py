@@ -42,8 +42,15 @@ def test_every_block_arrives_and_nothing_complains(visit: Visit) -> None:
 
 
 def test_a_block_is_one_mesh_and_the_viewer_paves_its_yards(visit: Visit) -> None:
-    meshes = visit.ask("""(() => { let count = 0;
-        nostalgin.page.city.tiles.group.traverse(one => { count += one.isMesh ? 1 : 0; });
+    # A block that has arrived is shown by one of the next frames.
+    meshes = visit.ask("""(async () => { let count = 0;
+        for (let frame = 0; frame < 200; frame++) {
+            count = 0;
+            nostalgin.page.city.tiles.group.traverse(one => { count += one.isMesh ? 1 : 0; });
+            if (count >= nostalgin.stats.walls) break;
+            nostalgin.step(0);
+            await new Promise(done => setTimeout(done, 25));
+        }
         return count; })()""")
     assert meshes == visit.ask("nostalgin.stats.walls") == 2
 
