@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from nostalgin_core.records import Standpoint
-from pipelines.site import site
 from pipelines import view
+from pipelines.site import site
 from pipelines.site.record import record
 from tests.core import sample_block
 

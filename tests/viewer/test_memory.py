@@ -32,7 +32,8 @@ def test_what_one_leaves_is_let_go_and_comes_again(browser: Any, address: str) -
     visit.ask(SPARING)
     rounds = [(went(visit, 5.0, 2), went(visit, AWAY_M, 0)) for _ in range(2)]
     (here, away), again = rounds
-    assert here["shapes"] and here["names"] >= 3
+    assert here["shapes"]
+    assert here["names"] >= 3
     assert (away["walls"], away["names"], away["shapes"], away["bytes"]) == (0, 0, 0, 0)
     assert away["textures"] < here["textures"]
     assert again == (here, away)
