@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -73,6 +73,13 @@ def explain_command(
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(out, problem) from problem
+    tell(report, out, voice)
+    if mended.refused:
+        raise typer.Exit(TOO_MANY_REJECTIONS)
+
+
+def tell(report: dict[str, Any], out: Path, voice: Voice) -> None:
+    """Tell what was found in a photo, and where the pictures of it lie."""
     targets = sum(one["target"] for one in report["facades"])
     voice.echo(
         f"{len(report['facades'])} facades ({targets} target), "
@@ -82,8 +89,6 @@ def explain_command(
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""
         voice.echo(f"rejected{which}: {one['stage']}: {one['reason']}: {one['detail']}")
     voice.echo(f"see {out / 'panel.png'} and {out / 'explain.json'}")
-    if mended.refused:
-        raise typer.Exit(TOO_MANY_REJECTIONS)
 
 
 def redrawn(photo: Path, data: bytes, listed: Path | None, voice: Voice) -> "Redrawn":

@@ -3,9 +3,10 @@
     CITY/runs/<run id>/{photos,facades,buildings,blocks,places,rejections}.parquet
     CITY/runs/<run id>/run.json
 
-The run's id is a hash of what was asked for, so a run that is repeated writes the same
-tables to the same place. Clock times are in run.json and the metrics.prom made of it
-alone. The table of a large archive is written in parts, as
+The run's id is a hash of what was asked for. Over a run that was shown none is written:
+one that is repeated has the next id of a line, and comes back to the earlier one if its
+tables are the same (`build.twin`). Clock times are in run.json and the metrics.prom
+made of it alone. The table of a large archive is written in parts, as
 `photos-03-of-64.parquet`, none of which is more than one process holds; what is told of
 one photo or block stands in one part.
 """
