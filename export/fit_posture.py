@@ -19,7 +19,7 @@ from jaxtyping import Float
 from scipy.optimize import minimize
 
 from export.segmentation_data import kept_out
-from nostalgin_core.photo import exposed
+from nostalgin_core.photo import framed
 from nostalgin_core.segment.posture import DOUBT, LOOKS, POSTURES, WEIGHTS, cues
 
 Cues = Float[np.ndarray, "n 5 13"]
@@ -64,7 +64,8 @@ def seen(data: Path, *, held_out: bool) -> Iterator[Float[np.ndarray, "5 13"]]:
                 continue
             image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
             if image is not None:
-                x0, y0, x1, y1 = exposed(image)
+                shown = framed(stem, image)
+                x0, y0, x1, y1 = shown.sheet or shown.frame
                 yield cues(image[y0:y1, x0:x1])
 
 

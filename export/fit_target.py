@@ -25,7 +25,7 @@ from nostalgin_core import matte, placard, segment
 from nostalgin_core.matte.target import WEIGHTS, Shown, features
 from nostalgin_core.measure.calibration import Reliability, reliability
 from nostalgin_core.measure.segmentation import overlap
-from nostalgin_core.photo import exposed
+from nostalgin_core.photo import framed
 from nostalgin_core.records import Facade, Instance, Photo, Rejection
 from nostalgin_core.segment import Network
 
@@ -71,7 +71,7 @@ def fronts(samples: Iterable[Sample], network: Network) -> list[Fronts]:
     made = []
     for sample in samples:
         targets = [t for t in sample.things if t.target]
-        photo = Photo(sample.name, sample.image, exposed(sample.image))
+        photo = framed(sample.name, sample.image)
         instances = segment.segment(photo, network)
         if not targets or isinstance(instances, Rejection):
             continue

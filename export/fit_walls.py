@@ -20,8 +20,8 @@ from scipy.optimize import minimize
 
 from export.remembered import shipped
 from export.segmentation_data import Sample, fill, read_folder
-from nostalgin_core.photo import exposed
-from nostalgin_core.records import Instance, Photo
+from nostalgin_core.photo import framed
+from nostalgin_core.records import Instance
 from nostalgin_core.segment import Network
 from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
@@ -55,7 +55,7 @@ def fronts(
     """Return what is weighed of every front found, and which are walls."""
     rows, walls = [], []
     for sample in samples:
-        photo = Photo(sample.name, sample.image, exposed(sample.image))
+        photo = framed(sample.name, sample.image)
         found = everything(photo, network, least=LEAST)
         things = mended(hiding(found.things), found.pixels, photo.frame)
         seen, hidden = planes(photo, found.pixels), before(things, photo.frame)

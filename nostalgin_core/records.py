@@ -64,7 +64,8 @@ class Photo:
 
     key: str  # the first 16 hex digits of the file's SHA-256
     image: Gray
-    frame: Box  # the exposed frame: what lies outside is film border
+    frame: Box  # the exposed frame: what lies outside is film border, or paper
+    sheet: Box | None = None  # a print with the light paper round it, if it has any
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -99,7 +99,7 @@ def decode(
     if page.gutters(image):
         detail = "a stripe of page parts them; cut each out, and index them one by one"
         return Rejection(key(data), "photo", "several prints", f"{name}: {detail}")
-    return Photo(key(data), image, frame.exposed(image))
+    return frame.framed(key(data), image)
 
 
 def size_px(data: bytes) -> tuple[int, int] | None:

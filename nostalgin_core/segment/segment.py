@@ -27,6 +27,7 @@ from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
 from nostalgin_core.segment.posture import doubted, excess, sure, undone
 from nostalgin_core.segment.punch import healed, punches
+from nostalgin_core.segment.sheet import of_frame, within
 from nostalgin_core.segment.sky import without_sky
 from nostalgin_core.segment.walls import without_walls
 
@@ -38,6 +39,7 @@ class Found(NamedTuple):
 
     things: tuple[Instance, ...]  # surest first
     pixels: Pixels  # of the frame
+    sure: float  # share of the pixels that it was shown and is sure of
 
 
 def segment(
@@ -79,27 +81,32 @@ def everything(
 ) -> Found:
     """Place all that the network gives a score of `least`, surest first.
 
-    It is shown the photo with punched holes healed.
+    It is shown the photo with punched holes healed, and a print on its paper.
 
     Raises:
         Nonsense: if the network doesn't answer what `Network` says.
     """
-    x0, y0, x1, y1 = photo.frame
-    frame = healed(photo, punches(photo))[y0:y1, x0:x1]
-    gray = prepared(frame, short_px=short_px, long_px=long_px)
+    sheet = photo.sheet or photo.frame
+    x0, y0, x1, y1 = sheet
+    shown = healed(photo, punches(photo))[y0:y1, x0:x1]
+    gray = prepared(shown, short_px=short_px, long_px=long_px)
     boxes, labels, scores, masks, pixels = asked(gray, network)
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
     found = []
     for i in np.argsort(-scores, kind="stable"):
         if scores[i] < least:
             break
-        placed = laid_over(masks[i], boxes[i] * scale, frame.shape)
+        placed = laid_over(masks[i], boxes[i] * scale, shown.shape)
         if placed is not None:
             box, probability = placed
             here = Box(box.x0 + x0, box.y0 + y0, box.x1 + x0, box.y1 + y0)
             category = CATEGORIES[int(labels[i]) - 1]
             found.append(Instance(category, float(scores[i]), here, probability))
-    return Found(tuple(found), pixels)
+    told = sure(pixels)
+    if photo.sheet is None:
+        return Found(tuple(found), pixels, told)
+    inside = tuple(within(found, photo.frame))
+    return Found(inside, of_frame(pixels, sheet, photo.frame), told)
 
 
 def asked(gray: Float32[np.ndarray, "rows columns"], network: Network) -> Answer:
@@ -126,9 +133,9 @@ def fallen(
     Raises:
         Nonsense: if the network doesn't answer what `Network` says.
     """
-    x0, y0, x1, y1 = photo.frame
+    x0, y0, x1, y1 = photo.sheet or photo.frame
     frame = photo.image[y0:y1, x0:x1]
-    here, most, lying = sure(found.pixels), 0.0, None
+    here, most, lying = found.sure, 0.0, None
     for doubt in doubted(frame):
         undoing = undone(frame, doubt.posture)
         gray = prepared(undoing, short_px=short_px, long_px=long_px)

@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, UInt64
@@ -48,16 +48,24 @@ def same_files(files: Files, lots: Lots, rows: Mapping[str, str]) -> Iterator[Fi
 
 
 def alike(files: Files, lots: Lots, rows: Mapping[str, str]) -> Iterator[Finding]:
-    """Find pictures that look the same, and those that are none."""
+    """Find pictures that look the same, that lie on light paper, and that are none."""
     hashes: dict[str, int] = {}
+    printed: list[str] = []
     for name, path in sorted(files.items()):
         found = looks(path, name)
         if isinstance(found, Rejection):
             words = f"{found.reason}: {found.detail}"
             remedy = "restore the file, or delete its rows"
             yield Finding("unreadable picture", rows[name], words, remedy, grave=True)
-        elif found is not None:
-            hashes[name] = found
+            continue
+        if found.printed:
+            printed.append(name)
+        if found.code is not None:
+            hashes[name] = found.code
+    if printed:
+        words = f"{printed[0]}, one of {len(printed)}"
+        remedy = "nothing where the picture is whole: its paper is cut off"
+        yield Finding("light border", rows[printed[0]], words, remedy, grave=False)
     names = list(hashes)
     codes = np.array([hashes[name] for name in names], np.uint64)
     for a, b in pairs(codes):
@@ -65,8 +73,17 @@ def alike(files: Files, lots: Lots, rows: Mapping[str, str]) -> Iterator[Finding
             yield pair("looks the same", names[a], names[b], lots, rows)
 
 
-def looks(path: Path, name: str) -> int | Rejection | None:
-    """Hash what a picture shows within its film's border; None of a plain one."""
+class Look(NamedTuple):
+    """What a picture shows."""
+
+    code: (
+        int | None
+    )  # the hash of what lies within film and paper; None if that is plain
+    printed: bool  # on light paper
+
+
+def looks(path: Path, name: str) -> Look | Rejection:
+    """Look at a picture within its border."""
     import imagehash
     from PIL import Image
 
@@ -75,9 +92,10 @@ def looks(path: Path, name: str) -> int | Rejection | None:
         return picture
     x0, y0, x1, y1 = picture.frame
     inner = picture.image[y0:y1, x0:x1]
+    on_paper = picture.sheet is not None
     if inner.size == 0 or inner.std() < 1.0:
-        return None
-    return bits(imagehash.phash(Image.fromarray(inner)).hash)
+        return Look(None, on_paper)
+    return Look(bits(imagehash.phash(Image.fromarray(inner)).hash), on_paper)
 
 
 def bits(hashed: Bool[np.ndarray, "8 8"]) -> int:

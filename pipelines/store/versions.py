@@ -39,12 +39,12 @@ from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 9,
+    "segment": 10,
     "matte": 7,
     "rectify": 9,
     "compare": 1,
     "inpaint": 6,
-    "block": 7,
+    "block": 8,
     "thumbnail": 2,
     "borrow": 4,
     "placard": 1,

@@ -7,8 +7,8 @@ import pytest
 
 import nostalgin_core
 from nostalgin_core import session
-from nostalgin_core.photo import exposed
-from nostalgin_core.records import Box, Photo, Rejection
+from nostalgin_core.photo import framed
+from nostalgin_core.records import Rejection
 from nostalgin_core.segment import Network, segment
 from nostalgin_core.segment.posture import (
     POSTURES,
@@ -129,7 +129,7 @@ def _surest_of(kind: int) -> Network:
 @pytest.mark.parametrize("posture", POSTURES[2:5:2])
 def test_a_photo_is_refused_where_the_network_agrees(posture: Posture) -> None:
     image = undone(_street(416, 416), _back(posture))
-    photo = Photo("a photo", image, exposed(image))
+    photo = framed("a photo", image)
     refused = segment(photo, _surest_of(1))
     assert isinstance(refused, Rejection)
     assert refused.reason == posture.reason
@@ -158,7 +158,7 @@ def test_real_photographs_that_fell_are_told_which_way(
     name: str, shipped: Network
 ) -> None:
     image = _real("historic_streets", name)
-    refused = segment(Photo(name, image, exposed(image)), shipped)
+    refused = segment(framed(name, image), shipped)
     assert isinstance(refused, Rejection)
     assert refused.reason == FALLEN[name]
 
@@ -169,9 +169,9 @@ def test_real_photographs_that_stand_are_segmented_until_they_are_turned(
     name: str, shipped: Network
 ) -> None:
     image = _real("taxphotos", name)
-    assert isinstance(segment(Photo(name, image, exposed(image)), shipped), tuple)
+    assert isinstance(segment(framed(name, image), shipped), tuple)
     turned = undone(image, POSTURES[2])
-    refused = segment(Photo(name, turned, exposed(turned)), shipped)
+    refused = segment(framed(name, turned), shipped)
     assert isinstance(refused, Rejection)
     assert refused.reason == "upside down"
 
@@ -180,7 +180,8 @@ def test_real_photographs_that_stand_are_segmented_until_they_are_turned(
 @pytest.mark.parametrize("name", DOUBTED)
 def test_what_cues_alone_doubt_is_not_refused(name: str, shipped: Network) -> None:
     image = _real("historic_streets", name)
-    x0, y0, x1, y1 = exposed(image)
+    photo = framed(name, image)
+    x0, y0, x1, y1 = photo.sheet or photo.frame
     assert doubted(image[y0:y1, x0:x1])
-    told = segment(Photo(name, image, Box(x0, y0, x1, y1)), shipped)
+    told = segment(photo, shipped)
     assert getattr(told, "reason", "") not in {one.reason for one in POSTURES}

@@ -115,6 +115,18 @@ def test_a_picture_saved_anew_and_smaller_looks_the_same(tmp_path: Path) -> None
     assert nostalgin("check", sound, "--strict").exit_code == 3
 
 
+def test_prints_on_light_paper_are_told_once(tmp_path: Path) -> None:
+    painted_so = pictures()
+    for name in ("5_2.png", "5_4.png"):
+        data = np.frombuffer(painted_so[name], np.uint8)
+        picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) // 2
+        card = np.pad(picture, ((14, 40), (16, 16)), constant_values=230)
+        painted_so[name] = cv2.imencode(".png", card)[1].tobytes()
+    found = check(Store(str(city(tmp_path, SOUND, painted_so))))
+    assert [(one.kind, one.grave) for one in found] == [("light border", False)]
+    assert "5_2.png, one of 2" in found[0].what
+
+
 def test_a_picture_that_is_none_is_told(tmp_path: Path) -> None:
     broken = pictures() | {"5_5.png": b"no picture"}
     assert kinds(city(tmp_path, SOUND, broken)) == [("unreadable picture", True)]
