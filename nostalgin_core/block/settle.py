@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from nostalgin_core import views
-from nostalgin_core.block import assign, astray, block, corner, lent
+from nostalgin_core.block import assign, astray, block, corner, lent, meant
 from nostalgin_core.records import (
     Assignment,
     Block,
@@ -93,7 +93,8 @@ def settle(
     """
     two = assign.two_fronted(fronts, candidates, seen)
     turned = corner.with_corners(fronts, two)
-    claims = views.claimed(turned, candidates, stretches, alike)
+    heard = views.heard(turned, candidates, stretches, alike)
+    claims, seen = views.claims(heard), meant.meant(seen, views.owned(heard))
     outcomes = assign.assign(turned, candidates, seen)
     outcomes = astray.outvoted(outcomes, claims, turned, candidates, seen)
     own = tuple(one for one in outcomes if isinstance(one, Assignment))

@@ -7,7 +7,7 @@ are of one front, and a `Claim` for each facade that shows a front of its ring. 
 """
 
 from nostalgin_core.views.agreement import Alike
-from nostalgin_core.views.claims import Claim, claimed
+from nostalgin_core.views.claims import Claim, claimed, claims, heard, owned
 from nostalgin_core.views.compare import compared
 from nostalgin_core.views.likeness import likeness, probability
 from nostalgin_core.views.marks import Marks, View, marks, seen_on, turned
@@ -21,10 +21,13 @@ __all__ = [
     "Stretch",
     "View",
     "claimed",
+    "claims",
     "compared",
+    "heard",
     "likeness",
     "marks",
     "overlay",
+    "owned",
     "probability",
     "seen_on",
     "stretch",

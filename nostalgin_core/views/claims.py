@@ -66,27 +66,65 @@ class Street:
         }
 
 
+class Heard(NamedTuple):
+    """What a block's photographs believe alone, and having heard each other."""
+
+    known: Street
+    alone: Mapping[str, Belief]
+    told: Mapping[str, Belief]
+
+
 def claimed(
     fronts: Sequence[Front],
     filed: Mapping[str, Sequence[str]],
     stretches: Sequence[Stretch],
     alike: Alike | None = None,
 ) -> tuple[Claim, ...]:
-    """Tell which front each facade shows: each front at most once in a photograph.
+    """Tell which front each facade shows: each front at most once in a photograph."""
+    return claims(heard(fronts, filed, stretches, alike))
+
+
+def heard(
+    fronts: Sequence[Front],
+    filed: Mapping[str, Sequence[str]],
+    stretches: Sequence[Stretch],
+    alike: Alike | None = None,
+) -> Heard:
+    """Let all photographs of a block tell each other what they show.
 
     `filed` names for each photograph the fronts that it is a record of. `alike` holds,
     for pairs of facades, the probability that both are of one front, at even odds.
     """
     known = street(fronts, filed, stretches)
     before = alone(known)
-    heard = before
+    told = before
     if alike:
-        heard = agreement.agreed(before, known.rows(), alike, known.belief)
+        told = agreement.agreed(before, known.rows(), alike, known.belief)
+    return Heard(known, before, told)
+
+
+def claims(heard: Heard) -> tuple[Claim, ...]:
+    """List what each facade is believed to show."""
     return tuple(
         claim
-        for photo in before
-        for claim in of_photo(known, photo, before[photo], heard[photo])
+        for photo in heard.alone
+        for claim in of_photo(heard.known, photo, heard.alone[photo], heard.told[photo])
     )
+
+
+def owned(heard: Heard) -> dict[Texture, float]:
+    """Tell how probably each facade shows a front that its photograph is filed under.
+
+    Order, listed widths and other photographs have their say in it.
+    """
+    told: dict[Texture, float] = {}
+    for photo, belief in heard.told.items():
+        strip = heard.known.strips[photo]
+        places = heard.known.rings[strip.ring].places
+        own = np.array([place.front.lot in strip.lots for place in places])
+        for one, row in zip(strip.stretches, belief, strict=True):
+            told[one.texture] = min(1.0, float(row[own].sum()))
+    return told
 
 
 def alone(known: Street, ring: int | None = None) -> dict[str, Belief]:
