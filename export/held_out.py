@@ -103,7 +103,7 @@ def pixel_figures(ask: Network, samples: Sequence[Sample]) -> dict[str, float]:
             cv2.resize(p, shape[::-1], interpolation=cv2.INTER_LINEAR) for p in pixels
         ]
         kind = np.argmax(full[:KINDS], axis=0)
-        every, hidden, counted = _labelled(sample)
+        every, hidden, counted = labelled(sample)
         seen = every & ~hidden
         score = agreement(full[1], seen, counted, threshold=0.5)
         on = hidden & every
@@ -125,9 +125,9 @@ def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
     """Compare what was found in one photo with its labels."""
     shape = sample.image.shape
     fronts = [t for t in sample.things if t.category == "facade" and t.scored]
-    whole = [fill(t.rings, shape) for t in fronts]
-    every, hidden, counted = _labelled(sample)
-    masks = [(i.category, _whole(i, shape) > 0.5) for i in instances]
+    outlined = [fill(t.rings, shape) for t in fronts]
+    every, hidden, counted = labelled(sample)
+    masks = [(i.category, whole(i, shape) > 0.5) for i in instances]
     facades = [m for category, m in masks if category == "facade"]
     before = _union([m for category, m in masks if category != "facade"], shape)
     claimed = _union(facades, shape) & ~before
@@ -136,7 +136,7 @@ def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
     )
     overlaps = [
         max((overlap(m & ~hidden, w & ~hidden) for m in facades), default=0.0)
-        for w in whole
+        for w in outlined
     ]
     aims = [q for t, q in zip(fronts, overlaps, strict=True) if t.target]
     on = hidden & every
@@ -151,7 +151,7 @@ def judged(sample: Sample, instances: Sequence[Instance]) -> dict:
     }
 
 
-def _labelled(sample: Sample) -> tuple[Mask, Mask, Mask]:
+def labelled(sample: Sample) -> tuple[Mask, Mask, Mask]:
     """Return all front, what hides anything, and what counts: no far row."""
     shape = sample.image.shape
     fronts = [t for t in sample.things if t.category == "facade"]
@@ -165,7 +165,8 @@ def _union(masks: Sequence[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
     return np.any(masks, axis=0) if len(masks) else np.zeros(shape, bool)
 
 
-def _whole(instance: Instance, shape: tuple[int, int]) -> np.ndarray:
+def whole(instance: Instance, shape: tuple[int, int]) -> np.ndarray:
+    """Return a thing's probability over all of its photo."""
     canvas = np.zeros(shape, np.float32)
     x0, y0, x1, y1 = instance.box
     canvas[y0:y1, x0:x1] = instance.probability

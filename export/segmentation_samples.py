@@ -14,7 +14,7 @@ from torch import Tensor
 from export.blemishes import blemished
 from export.cells import Cells, cells
 from export.copy_paste import Donor, paste
-from export.rare import rare
+from export.rare import MIXED, rare
 from export.segmentation_data import (
     UNSCORED,
     Sample,
@@ -51,6 +51,7 @@ class Schedule:
     boxes_only: bool = False  # proposals and boxes learn; features, masks, branch stay
     dropout: float = 0.0  # share of what boxes are told apart by that is lost a step
     rare: float = 0.0  # share of photos that are made one of a rare kind
+    kinds: tuple[str, ...] = MIXED  # of which these are drawn
 
     def rate_at(self, step: int) -> float:
         """Return the learning rate of a step."""
@@ -111,7 +112,7 @@ def dressed(
         if rng.random() < 0.5:
             sample = tilted(sample, rng)
         if schedule.rare and rng.random() < schedule.rare:
-            sample = rare(sample, rng)
+            sample = rare(sample, rng, schedule.kinds)
         if rng.random() < 0.5:
             sample = paste(sample, cut, rng)
         sample = blemished(sample, rng)

@@ -25,6 +25,7 @@ from export.held_out import as_callable, figures, pixel_figures, pixels_alone
 from export.mask_rcnn import MaskRCNN, freeze, load_weights
 from export.painted_segmentation_data import read_painted
 from export.pseudo_labels import read_pseudo
+from export.rare import KINDS
 from export.segmentation_data import Sample, read_folder, some
 from export.segmentation_samples import Schedule, Seen, drawn
 from export.semantic_branch import from_trial
@@ -189,6 +190,7 @@ def planned(args: argparse.Namespace) -> Schedule:
         boxes_only=args.boxes_only,
         dropout=args.dropout,
         rare=args.rare,
+        kinds=tuple(args.kinds),
     )
 
 
@@ -235,6 +237,7 @@ def _arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--rare", type=float, default=usual.rare, help="share of photos"
     )
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=usual.kinds)
     parser.add_argument("--short-px", type=int, nargs=2, default=usual.short_px)
     parser.add_argument("--share", type=float, default=1.0, help="of the labels")
     parser.add_argument("--into", type=Path, required=True, help="logs, checkpoints")
