@@ -12,6 +12,7 @@ from nostalgin_core.catalogue.catalogue import (
     read,
     unknown,
 )
+from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.entry import Entry, from_file_name, inside, stem
 from nostalgin_core.catalogue.naming import NAMELESS, Naming
 from nostalgin_core.catalogue.rings import fronts
@@ -19,6 +20,7 @@ from nostalgin_core.catalogue.rings import fronts
 __all__ = [
     "NAMELESS",
     "Catalogue",
+    "Doubt",
     "Entry",
     "Naming",
     "from_file_name",

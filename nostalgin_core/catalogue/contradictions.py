@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from nostalgin_core.address import house_numbers
+from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.entry import Entry, Named, from_file_name
 
 WIDEST: Final = 60  # numbers of one lot: thirty doors
@@ -12,7 +13,7 @@ WIDEST: Final = 60  # numbers of one lot: thirty doors
 
 def contradictions(
     rows: Sequence[Entry], *, named: Named = from_file_name
-) -> Iterator[str]:
+) -> Iterator[Doubt]:
     """Name the rows of one block that were written twice, or for another lot's photo.
 
     A photo's name tells its lot only in an archive that names its files so.
@@ -23,20 +24,23 @@ def contradictions(
         says = (row.photo, row.lot, row.street, row.address)
         first = seen.setdefault(says, row.row)
         if first != row.row:
-            yield (
+            text = (
                 f"block {row.block}, lot {row.lot}: row {first} and row {row.row} say "
                 "the same; delete one of them"
             )
+            yield Doubt(text, row.block, row.lot, (first, row.row))
         told = named(row.photo)
         if told is not None and told != (row.block, row.lot):
-            yield (
+            text = (
                 f"block {row.block}, lot {row.lot}: row {row.row} names {row.photo}, "
                 f"by its name a photo of block {told[0]}, lot {told[1]}; mend the "
                 "lot or the photo"
             )
+            where = (row.block, row.lot, (row.row,))
+            yield Doubt(text, *where, photo=row.photo, named=told)
 
 
-def _odd_ranges(rows: Sequence[Entry]) -> Iterator[str]:
+def _odd_ranges(rows: Sequence[Entry]) -> Iterator[Doubt]:
     """Name the house numbers that fall, pass to the other side, or run too far."""
     told: set[tuple[str, str]] = set()
     for row in rows:
@@ -52,7 +56,8 @@ def _odd_ranges(rows: Sequence[Entry]) -> Iterator[str]:
             why = "is too wide for one lot"
         if why:
             told.add((row.lot, row.address))
-            yield (
+            text = (
                 f"block {row.block}, lot {row.lot}: row {row.row} says {row.address}, "
                 f"a range that {why}; mend the number"
             )
+            yield Doubt(text, row.block, row.lot, (row.row,))

@@ -51,7 +51,7 @@ def assumed_width(address: str) -> float:
     """
     numbers = house_numbers(address)
     more = (numbers[1] - numbers[0]) // 2 if numbers else 0
-    return FOOT_M * (LOT_FT + 20.0 * min(more, 10))
+    return round(FOOT_M * (LOT_FT + 20.0 * min(more, 10)), 3)
 
 
 def length(

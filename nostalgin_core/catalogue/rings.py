@@ -27,6 +27,7 @@ from nostalgin_core.catalogue.contradictions import contradictions
 from nostalgin_core.catalogue.crowded import uncrowded
 from nostalgin_core.catalogue.cuts import lone, split
 from nostalgin_core.catalogue.directions import Law, directions
+from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.entry import Entry, Named, from_file_name
 from nostalgin_core.catalogue.faces import faces
 from nostalgin_core.catalogue.lengths import assumed_width
@@ -57,7 +58,7 @@ class _Inferred:
             and (not self.by_lot or self.begins(side) or not side.direction)
         ]
 
-    def warnings(self, law: Law) -> list[str]:
+    def warnings(self, law: Law) -> list[Doubt]:
         """Tell of the lots that were set aside, with their likeliest corrections."""
         sides = [side for ring in self.rings for side in ring if side is not None]
         misfits = [
@@ -91,15 +92,15 @@ class _Inferred:
 
 def fronts(
     entries: Sequence[Entry], *, named: Named = from_file_name
-) -> tuple[tuple[Front, ...], tuple[str, ...]]:
-    """Order all lots of a catalogue; return its fronts, block by block, and warnings.
+) -> tuple[tuple[Front, ...], tuple[Doubt, ...]]:
+    """Order all lots of a catalogue; return its fronts, block by block, and doubts.
 
     Where every row of a block gives its `side`, those are taken as they are.
     """
     blocks: dict[str, list[Entry]] = defaultdict(list)
     for entry in entries:
         blocks[entry.block].append(entry)
-    warnings: list[str] = []
+    warnings: list[Doubt] = []
     given: dict[str, list[Front]] = {}
     inferred: dict[str, _Inferred] = {}
     for block, rows in blocks.items():
@@ -109,7 +110,8 @@ def fronts(
             given[block] = as_given(some)
             continue
         if any(spot.side is not None for spot in some):
-            warnings.append(f"block {block}: only some rows give a side; none is used")
+            text = f"block {block}: only some rows give a side; none is used"
+            warnings.append(Doubt(text, block))
         inferred[block] = _inferred(some)
     law, doubts = directions(
         [
@@ -124,7 +126,7 @@ def fronts(
     made: list[Front] = []
     for block in blocks:
         made += given[block] if block in given else inferred[block].fronts(law)
-    return distinct(made), (*warnings, *doubts)
+    return distinct(made), (*warnings, *map(Doubt, doubts))
 
 
 def _inferred(some: list[Spot]) -> _Inferred:

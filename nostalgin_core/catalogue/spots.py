@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Final
 
 from nostalgin_core.address import house_numbers
+from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.entry import Entry
 
 HALF: Final = re.compile(r"\d\s*(?:1/2|½)")
@@ -45,13 +46,17 @@ class Spot:
         """1: odd, 0: even; 33 1/2 is odd."""
         return None if self.numbers is None else int(self.numbers[0]) % 2
 
+    @property
+    def place(self) -> str:
+        """Number and street as they are listed; "" if neither is."""
+        return " ".join(word for word in (self.address, self.listed) if word)
+
     def told(self) -> str:
         """Name the lot as a person looks for it."""
-        listed = " ".join(word for word in (self.address, self.listed) if word)
-        return f"lot {self.lot} ({listed or 'no address'})"
+        return f"lot {self.lot} ({self.place or 'no address'})"
 
 
-def spots(rows: Sequence[Entry]) -> tuple[list[Spot], list[str]]:
+def spots(rows: Sequence[Entry]) -> tuple[list[Spot], list[Doubt]]:
     """Merge the rows of one block that are about the same lot on the same street.
 
     Of two house numbers the first counts, and the doubt is told.
@@ -64,11 +69,12 @@ def spots(rows: Sequence[Entry]) -> tuple[list[Spot], list[str]]:
         spot = _spot(row, position, dense=dense)
         known = merged.get(name)
         if known and known.numbers and spot.numbers not in (None, known.numbers):
-            doubts.append(
+            text = (
                 f"block {row.block}, lot {row.lot}: row {known.row} says "
                 f"{known.address} {known.street}, row {row.row} says {row.address}; "
                 "the first counts; mend one, or the lot of one"
             )
+            doubts.append(Doubt(text, row.block, row.lot, (known.row, row.row)))
         merged[name] = spot if known is None else _joined(known, spot)
     return _in_walk(sorted(merged.values(), key=lambda spot: spot.key)), doubts
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from nostalgin_core.catalogue.along import Along
+from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.faces import WITNESSES, Faces
 from nostalgin_core.catalogue.spots import Spot, folded, numbers_of
 
@@ -19,8 +20,8 @@ MOST: Final = 3  # streets
 
 def told(
     doubts: Iterable[tuple[Spot, str]], sides: Sequence[Along], known: Faces
-) -> list[str]:
-    """Write a line for each doubtful lot, its reasons joined, in the order of lots.
+) -> list[Doubt]:
+    """Tell of each doubtful lot, its reasons joined, in the order of lots.
 
     It names the list's row, and the street on which the lot is taken to stand.
     """
@@ -31,14 +32,23 @@ def told(
     streets: dict[str, list[str]] = defaultdict(list)
     for one in (one for side in sides for one in side.spots):
         streets[one.lot].append(one.street)
-    lines = []
+    found = []
     for spot, why in sorted(reasons.values(), key=lambda one: (one[0].key, one[0].lot)):
         likely = _likely(spot, where.get(spot.lot), known)
         some = "; ".join(dict.fromkeys([*why, *_taken(spot, streets[spot.lot])]))
         remedy = f"; likeliest {' or '.join(likely)}" if likely else ""
         words = f"row {spot.row}: {some}; mend row {spot.row} if it is wrong{remedy}"
-        lines.append(f"block {spot.block}, {spot.told()}: {words}")
-    return lines
+        found.append(
+            Doubt(
+                f"block {spot.block}, {spot.told()}: {words}",
+                block=spot.block,
+                lot=spot.lot,
+                rows=(spot.row,),
+                address=spot.place,
+                likely=tuple(likely),
+            )
+        )
+    return found
 
 
 def _taken(spot: Spot, streets: Sequence[str]) -> list[str]:

@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from nostalgin_core.records import Front, Rejection
+from nostalgin_core.records import Rejection
 from pipelines.corrections.corrections import Correction, Corrections
+from pipelines.corrections.mending import Rows
 from pipelines.index.row import Row
 
 MOST_NAMES: Final = 8  # of a lot's fronts, in a message
@@ -63,8 +64,11 @@ def applied(rows: Sequence[Row], corrections: Corrections) -> Applied:
     """Merge corrections over rows: keys first, then widths, then orders.
 
     One that speaks of what is not there is rejected by its row, and changes nothing.
+    The work is linear in rows and in what corrections touch.
     """
-    made = Applied(tuple(rows), (), corrections.rejections)
+    work = Work(corrections.rejections)
+    for row in rows:
+        work.rows.add(row)
     ways = {
         "key": keyed,
         "placard": keyed,
@@ -78,68 +82,102 @@ def applied(rows: Sequence[Row], corrections: Corrections) -> Applied:
     for what, way in ways.items():
         for one in corrections.given:
             if one.what == what:
-                made = way(made, one)
-    return made
+                way(work, one)
+    return work.applied()
 
 
-def keyed(made: Applied, one: Correction) -> Applied:
+class Work:
+    """What corrections are merged into, one after the other."""
+
+    def __init__(self, rejections: Sequence[Rejection]) -> None:
+        """Begin with no rows, and with the corrections that could not be read."""
+        self.rows = Rows()
+        self.changes: list[Change] = []
+        self.rejections = list(rejections)
+        self.heights_m: dict[str, float] = {}
+        self.targets_px: dict[str, float] = {}
+        self.outlines: dict[str, str] = {}
+        self.quads: dict[str, str] = {}
+
+    def changed(self, one: Correction, before: str, after: str) -> None:
+        """Tell what a correction changed."""
+        change = Change(one.row, one.what, one.subject, before, after, one.note)
+        self.changes.append(change)
+
+    def refused(self, one: Correction, reason: str, remedy: str) -> None:
+        """Tell why a correction changed nothing."""
+        detail = f"{one.what} of {one.subject[:80]}: {remedy}"
+        self.rejections.append(Rejection(one.row, "corrections", reason, detail))
+
+    def applied(self) -> Applied:
+        """Give what came of all."""
+        return Applied(
+            tuple(self.rows),
+            tuple(self.changes),
+            tuple(self.rejections),
+            self.heights_m,
+            self.targets_px,
+            self.outlines,
+            self.quads,
+        )
+
+
+def keyed(work: Work, one: Correction) -> None:
     """Let a photograph show the fronts of another lot."""
     block, lot = one.lot_key
     fronts = {
-        row.front.front_id: row.front
-        for row in reversed(made.rows)
-        if row.front and (row.front.block, row.front.lot) == (block, lot)
+        front.front_id: front
+        for front in reversed(work.rows.fronts_of_building(f"{block}-{lot}"))
+        if (front.block, front.lot) == (block, lot)
     }
-    own = [row for row in made.rows if row.photo == one.photo]
+    own = work.rows.of_photo(one.photo)
     if not own:
-        return refused(made, one, "no such photo", "write it as the manifest does")
+        work.refused(one, "no such photo", "write it as the manifest does")
+        return
     if not fronts:
         why = f"add a front of block {block}, lot {lot} to the list, or mend the key"
-        return refused(made, one, "no such lot", why)
+        work.refused(one, "no such lot", why)
+        return
     before = {f"{r.front.block}-{r.front.lot}" for r in own if r.front}
-    kept = [row for row in made.rows if row.photo != one.photo]
-    there = {(row.front.block, row.front.front_id) for row in kept if row.front}
+    work.rows.drop_photo(one.photo)
     left = [
         replace(row, photo="", cells=dict(row.cells))
         for row in own
         if row.front
-        and (row.front.block, row.front.front_id) not in there
         and row.front.front_id not in fronts
+        and not work.rows.has_front(row.front)
     ]
+    work.rows.drop_bare(fronts)
     shown = [replace(own[0], front=front) for front in reversed(fronts.values())]
-    bare = [r for r in kept if r.photo or not r.front or r.front.front_id not in fronts]
-    rows = (*bare, *left, *shown)
-    return changed(
-        replace(made, rows=rows), one, ", ".join(sorted(before)), f"{block}-{lot}"
-    )
+    for row in (*left, *shown):
+        work.rows.add(row)
+    work.changed(one, ", ".join(sorted(before)), f"{block}-{lot}")
 
 
-def widened(made: Applied, one: Correction) -> Applied:
+def widened(work: Work, one: Correction) -> None:
     """Let a front be as wide as is known."""
-    own = fronts_of(made, one.front_id)
-    if not own:
-        return refused(made, one, "no such front", of_its_lot(made, one.front_id))
-    first = own[0]
+    first = work.rows.front(one.front_id)
+    if first is None:
+        work.refused(one, "no such front", of_its_lot(work.rows, one.front_id))
+        return
     mark = " assumed" if first.width_assumed else ""
-    mended = replaced(made, one.front_id, width_m=one.number, width_assumed=False)
-    return changed(mended, one, f"{first.width_m:g}{mark}", f"{one.number:g}")
+    work.rows.mend(one.front_id, width_m=one.number, width_assumed=False)
+    work.changed(one, f"{first.width_m:g}{mark}", f"{one.number:g}")
 
 
-def ordered(made: Applied, one: Correction) -> Applied:
+def ordered(work: Work, one: Correction) -> None:
     """Let a front stand elsewhere in its ring: 12.5 is between ranks 12 and 13.
 
     It takes the side of its new neighbours, where both have the same.
     """
-    own = fronts_of(made, one.front_id)
-    if not own:
-        return refused(made, one, "no such front", of_its_lot(made, one.front_id))
-    moved = own[0]
+    moved = work.rows.front(one.front_id)
+    if moved is None:
+        work.refused(one, "no such front", of_its_lot(work.rows, one.front_id))
+        return
     others = {
-        row.front.front_id: row.front
-        for row in reversed(made.rows)
-        if row.front
-        and (row.front.block, row.front.ring) == (moved.block, moved.ring)
-        and row.front.front_id != moved.front_id
+        front.front_id: front
+        for front in reversed(work.rows.fronts_of_ring(moved.block, moved.ring))
+        if front.front_id != moved.front_id
     }
     places = sorted(others.values(), key=lambda front: (front.rank, front.front_id))
     before = [front for front in places if front.rank < one.number]
@@ -148,87 +186,57 @@ def ordered(made: Applied, one: Correction) -> Applied:
     side = sides.pop() if len(sides) == 1 else moved.side
     for rank, front in enumerate((*before, moved, *after)):
         if front is moved:
-            made = replaced(made, front.front_id, rank=rank, side=side)
+            work.rows.mend(front.front_id, rank=rank, side=side)
         elif front.rank != rank:
-            made = replaced(made, front.front_id, rank=rank)
-    return changed(made, one, f"{moved.rank}", f"{len(before)}")
+            work.rows.mend(front.front_id, rank=rank)
+    work.changed(one, f"{moved.rank}", f"{len(before)}")
 
 
-def heightened(made: Applied, one: Correction) -> Applied:
+def heightened(work: Work, one: Correction) -> None:
     """Let a building be as high as is known."""
-    if not any(
-        row.front and f"{row.front.block}-{row.front.lot}" == one.building_id
-        for row in made.rows
-    ):
-        return refused(made, one, "no such building", "write it as block-lot")
-    made = replace(made, heights_m={**made.heights_m, one.building_id: one.number})
-    return changed(made, one, "as photographed", f"{one.number:g}")
+    if not work.rows.fronts_of_building(one.building_id):
+        work.refused(one, "no such building", "write it as block-lot")
+        return
+    work.heights_m[one.building_id] = one.number
+    work.changed(one, "as photographed", f"{one.number:g}")
 
 
-def targeted(made: Applied, one: Correction) -> Applied:
+def targeted(work: Work, one: Correction) -> None:
     """Let the facade at a place of a photograph be the one it is a record of."""
-    if not any(row.photo == one.photo for row in made.rows):
-        return refused(made, one, "no such photo", "write it as the manifest does")
-    made = replace(made, targets_px={**made.targets_px, one.photo: one.number})
-    return changed(made, one, "as segmented", f"x = {one.number:g} px")
+    if there(work, one):
+        work.targets_px[one.photo] = one.number
+        work.changed(one, "as segmented", f"x = {one.number:g} px")
 
 
-def outlined(made: Applied, one: Correction) -> Applied:
+def outlined(work: Work, one: Correction) -> None:
     """Let a photograph's front be what is drawn round it."""
-    if not any(row.photo == one.photo for row in made.rows):
-        return refused(made, one, "no such photo", "write it as the manifest does")
-    made = replace(made, outlines={**made.outlines, one.photo: one.shape})
-    return changed(made, one, "as segmented", one.shape)
+    if there(work, one):
+        work.outlines[one.photo] = one.shape
+        work.changed(one, "as segmented", one.shape)
 
 
-def cornered(made: Applied, one: Correction) -> Applied:
+def cornered(work: Work, one: Correction) -> None:
     """Let a photograph's front have the corners that are drawn."""
-    if not any(row.photo == one.photo for row in made.rows):
-        return refused(made, one, "no such photo", "write it as the manifest does")
-    made = replace(made, quads={**made.quads, one.photo: one.shape})
-    return changed(made, one, "as rectified", one.shape)
+    if there(work, one):
+        work.quads[one.photo] = one.shape
+        work.changed(one, "as rectified", one.shape)
 
 
-def fronts_of(made: Applied, front_id: str) -> list[Front]:
-    """List the rows' fronts of one name."""
-    return [r.front for r in made.rows if r.front and r.front.front_id == front_id]
+def there(work: Work, one: Correction) -> bool:
+    """Tell whether there is the photograph of which a correction speaks."""
+    found = bool(work.rows.of_photo(one.photo))
+    if not found:
+        work.refused(one, "no such photo", "write it as the manifest does")
+    return found
 
 
-def of_its_lot(made: Applied, front_id: str) -> str:
+def of_its_lot(rows: Rows, front_id: str) -> str:
     """Say which names the fronts of a lot have in the manifest.
 
     A model also names walls that were made round a corner: they are of no row.
     """
-    names = dict.fromkeys(
-        front.front_id
-        for front in (row.front for row in made.rows)
-        if front and front_id.startswith(f"{front.block}-{front.lot}-")
-    )
+    names = rows.names_beside(front_id)
     if not names:
         return "no lot has it: write a front_id of manifest.csv, as block-lot-side"
-    shown = ", ".join([*names][:MOST_NAMES])
+    shown = ", ".join(names[:MOST_NAMES])
     return f"its lot has {shown} in manifest.csv: write one of these"
-
-
-def replaced(made: Applied, front_id: str, **fields: float) -> Applied:
-    """Change a front in all its rows."""
-    rows = tuple(
-        replace(row, front=replace(row.front, **fields))  # type: ignore[arg-type]
-        if row.front and row.front.front_id == front_id
-        else row
-        for row in made.rows
-    )
-    return replace(made, rows=rows)
-
-
-def changed(made: Applied, one: Correction, before: str, after: str) -> Applied:
-    """Tell what a correction changed."""
-    change = Change(one.row, one.what, one.subject, before, after, one.note)
-    return replace(made, changes=(*made.changes, change))
-
-
-def refused(made: Applied, one: Correction, reason: str, remedy: str) -> Applied:
-    """Tell why a correction changed nothing."""
-    detail = f"{one.what} of {one.subject[:80]}: {remedy}"
-    why = Rejection(one.row, "corrections", reason, detail)
-    return replace(made, rejections=(*made.rejections, why))

@@ -48,8 +48,9 @@ def as_indexed(
     photos = sorted({entry.photo for entry in sound if entry.photo})
 
     def laid_out(rows: Sequence[Entry]) -> tuple[Sequence[Front], Sequence[str]]:
-        fronts, told = catalogue.fronts(rows)
+        fronts, doubts = catalogue.fronts(rows)
         _, strangers = catalogue.matched(rows, photos)
+        told = [one.text for one in doubts]
         return fronts, [*told, *(f"{one.key}: {one.reason}" for one in strangers)]
 
     return laid_out

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from nostalgin_core import catalogue
-from nostalgin_core.catalogue import Catalogue, Entry
+from nostalgin_core.catalogue import Catalogue, Doubt, Entry
 from nostalgin_core.records import Front, Rejection
 from pipelines.index import lists, manifest, readings, warned
 from pipelines.index.anchors import Asked, taken
@@ -42,10 +42,15 @@ class Indexed:
     without_front: tuple[str, ...]
     without_photo: int
     rejections: tuple[Rejection, ...]
-    warnings: tuple[str, ...]
+    doubts: tuple[Doubt, ...]
     widths_assumed: int = 0  # of the fronts
     witnesses: Mapping[str, int] = field(default_factory=dict)  # photos, by verdict
     boards: int = 0  # that were looked at
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Tell what is doubtful in words."""
+        return tuple(one.text for one in self.doubts)
 
     @property
     def astray(self) -> bool:
@@ -138,8 +143,9 @@ def draft(
     encoded = manifest.encoded(cells, title=cleaned(title), kept=None)
     unlisted = () if blocks else strangers
     wrong = (*unnamed, *read.rejections, *lots.crowded, *unlisted)
-    doubts = (*lots.said, *beside.warnings, *lots.doubts, *placeless, *heard.doubts())
-    told = {"rejections": wrong, "warnings": doubts}
+    said, heard_of = (*lots.said, *beside.warnings), (*placeless, *heard.doubts())
+    doubts = (*map(Doubt, said), *lots.doubts, *map(Doubt, heard_of))
+    told = {"rejections": wrong, "doubts": doubts}
     files[PROFILE] = own.toml
     return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **told))
 
@@ -156,8 +162,8 @@ def put(store: Store, made: Draft, mended: tuple[str, bytes] | None) -> Indexed:
         store.write_bytes(name, data)
     readings.write(store, pictured(store, made.heard))
     told = made.indexed
-    warned.write(store, told.rejections, told.warnings)
-    return replace(told, warnings=(*told.warnings, *kept))
+    warned.write(store, told.rejections, told.doubts)
+    return replace(told, doubts=(*told.doubts, *map(Doubt, kept)))
 
 
 def first_heard(
@@ -185,7 +191,7 @@ def indexed(
     heard: Hearing,
     *,
     rejections: tuple[Rejection, ...],
-    warnings: tuple[str, ...],
+    doubts: tuple[Doubt, ...],
 ) -> Indexed:
     """Count what was indexed."""
     return Indexed(
@@ -196,7 +202,7 @@ def indexed(
         without_photo=sum(not photo for photo, _ in rows),
         widths_assumed=sum(front.width_assumed for front in lots.fronts),
         rejections=rejections,
-        warnings=warnings,
+        doubts=doubts,
         witnesses=readings.counted(heard.readings),
         boards=len(heard.boards),
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from nostalgin_core import catalogue
-from nostalgin_core.catalogue import Catalogue, Entry, Naming
+from nostalgin_core.catalogue import Catalogue, Doubt, Entry, Naming
 from nostalgin_core.records import Front, Rejection
 from pipelines.index import lists, manifest
 from pipelines.index.cells import MOST_FRONTS
@@ -24,7 +24,7 @@ class Lots:
     fronts: tuple[Front, ...]
     crowded: list[Rejection]
     said: list[str]
-    doubts: Sequence[str]
+    doubts: Sequence[Doubt]
 
     @property
     def blocks(self) -> list[str]:

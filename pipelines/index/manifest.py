@@ -25,13 +25,13 @@ from pipelines.index import comma, source, told
 from pipelines.index.cells import text
 from pipelines.index.row import CSV, Refused, Row, contradictions, usable
 from pipelines.index.source import (
+    COMING,
     CSV_HASH,
     KEPT,
     PARQUET,
     TITLE,
     Source,
     Unusable,
-    optional,
 )
 from pipelines.store import Store, tables
 
@@ -88,9 +88,16 @@ def write(
 
 
 def put(store: Store, both: tuple[bytes, bytes]) -> None:
-    """Write a manifest's two forms, as they are encoded."""
-    for name, data in zip((CSV, PARQUET), both, strict=True):
-        store.write_bytes(name, data)
+    """Write a manifest's two forms, as they are encoded.
+
+    Whenever it is killed, the old or the new manifest is there, and neither is taken
+    for one that was mended by hand.
+    """
+    csv, parquet = both
+    store.write_bytes(COMING, parquet)
+    store.write_bytes(CSV, csv)
+    store.write_bytes(PARQUET, parquet)
+    store.remove(COMING)
 
 
 def encoded(
@@ -168,14 +175,14 @@ def mended_by_hand(store: Store) -> tuple[str, bytes] | None:
 
     Returns the name of the file that holds their work, and its bytes.
     """
-    csv, parquet = optional(store, CSV), optional(store, PARQUET)
+    csv, parquet = source.both(store)
     marks: dict[bytes, bytes] = {}
     if parquet is not None:
         with contextlib.suppress(pa.ArrowException, OSError):  # what it told is lost
             marks = pq.read_schema(io.BytesIO(parquet)).metadata or {}
     if csv is None:
         return (PARQUET, parquet) if parquet is not None and MENDED in marks else None
-    same = marks.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
+    same = parquet is not None and source.belongs(parquet, csv)
     return None if same and MENDED not in marks else (CSV, csv)
 
 

@@ -1,7 +1,9 @@
 """A manifest as it lies in its folder, read a thousand rows at a time.
 
 It is the CSV if that was mended by hand, else the Parquet file, which remembers the
-hash of the CSV that it was written with.
+hash of the CSV that it was written with. Two files can't be replaced at once, so the
+Parquet file is written under a name of its own first: of a process that was killed
+between the two the CSV on the disk still has the Parquet file that it belongs to.
 """
 
 import contextlib
@@ -21,6 +23,7 @@ from pipelines.index.row import CSV
 from pipelines.store import Store
 
 PARQUET: Final = "manifest.parquet"
+COMING: Final = "manifest.parquet.coming"  # while the manifest is being written
 CSV_HASH: Final = b"nostalgin.csv_sha256"
 TITLE: Final = b"nostalgin.title"
 KEPT: Final = b"nostalgin.kept"  # columns of a list that mean nothing here
@@ -75,18 +78,39 @@ def found(store: Store) -> Source:
     Raises:
         Unusable: if there is none, or if what there is makes no sense.
     """
-    csv, parquet = optional(store, CSV), optional(store, PARQUET)
+    csv, parquet = both(store)
     title, kept = "", tuple[str, ...]()
     if parquet is not None:
         there = of_parquet(parquet, store.root)
-        mark = marks(parquet, store.root).get(CSV_HASH, b"").decode(errors="replace")
-        if csv is None or hashlib.sha256(csv).hexdigest() == mark:
+        if csv is None or belongs(parquet, csv):
             return there
         title, kept = there.title, there.kept
     if csv is None:
         raise Unusable(f"{store.root} has no {PARQUET}: run `nostalgin index` first")
     mended = parquet is not None
     return Source(store.root, CSV, csv, title, mended=mended, kept=kept)
+
+
+def both(store: Store) -> tuple[bytes | None, bytes | None]:
+    """Read the manifest's two forms, the CSV and the Parquet file that goes with it.
+
+    Raises:
+        Unusable: if one of them is there and can't be read.
+    """
+    csv, parquet = optional(store, CSV), optional(store, PARQUET)
+    if csv is None or (parquet is not None and belongs(parquet, csv)):
+        return csv, parquet
+    coming = optional(store, COMING)
+    return csv, coming if coming is not None and belongs(coming, csv) else parquet
+
+
+def belongs(parquet: bytes, csv: bytes) -> bool:
+    """Tell whether a Parquet file was written with this CSV; a spoiled one was not."""
+    try:
+        told = pq.read_schema(io.BytesIO(parquet)).metadata or {}
+    except (pa.ArrowException, OSError):
+        return False
+    return told.get(CSV_HASH) == hashlib.sha256(csv).hexdigest().encode()
 
 
 def of_parquet(data: bytes, where: str) -> Source:

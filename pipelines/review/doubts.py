@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import Final
 
 from nostalgin_core.address import house_numbers
+from nostalgin_core.catalogue import Doubt
 from nostalgin_core.records import Front
 from pipelines.console import folded
 from pipelines.index import warned
@@ -20,13 +21,6 @@ from pipelines.index.row import Row
 from pipelines.store import Store
 
 MOST: Final = 200  # warnings on the page
-LOT: Final = re.compile(r"block (?P<block>[^,]+), lot (?P<lot>[^ :]+)[ :]")
-NAMED: Final = re.compile(
-    r"names (?P<photo>.+), by its name a photo of "
-    r"block (?P<block>[^,]+), lot (?P<lot>[^;]+);"
-)
-LISTED: Final = re.compile(r"lot [^ ]+ \((?P<address>[^)]+)\): ")
-LIKELY: Final = re.compile(r"; likeliest (?P<all>.+)$")
 ADDRESS: Final = re.compile(r"(?P<number>\d[^ ]*) (?P<street>.+)")
 
 Lots = Mapping[tuple[str, str], Sequence[Front]]
@@ -44,8 +38,8 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class Doubt:
-    """One thing that `index` warned of."""
+class Shown:
+    """One thing that `index` warned of, as the page has it."""
 
     text: str
     proposals: tuple[Proposal, ...] = ()
@@ -56,7 +50,7 @@ class Told:
     """All that `index` warned of: alike rejections folded, and single warnings."""
 
     rejected: tuple[str, ...] = ()
-    warnings: tuple[Doubt, ...] = ()
+    warnings: tuple[Shown, ...] = ()
     more: int = 0  # warnings that are left out
 
     @property
@@ -74,26 +68,18 @@ def told(store: Store, rows: Iterable[Row]) -> Told:
             own = lots[row.front.block, row.front.lot]
             own.setdefault(row.front.front_id, row.front)
     fronts = {key: tuple(own.values()) for key, own in lots.items()}
-    some = tuple(Doubt(one, proposed(one, fronts)) for one in kept.warnings[:MOST])
+    some = tuple(Shown(one.text, proposed(one, fronts)) for one in kept.doubts[:MOST])
     rejected = tuple(folded(kept.rejections))
-    return Told(rejected, some, len(kept.warnings[MOST:]))
+    return Told(rejected, some, len(kept.doubts[MOST:]))
 
 
-def proposed(text: str, lots: Lots) -> tuple[Proposal, ...]:
-    """Propose what mends a warning: another key of a photograph, or a front's order."""
-    lot = LOT.match(text)
-    if lot is None:
-        return ()
-    own = (lot["block"], lot["lot"])
-    named = NAMED.search(text)
-    if named is not None:
-        key = f"{named['block']}-{named['lot']}"
-        there = (named["block"], named["lot"]) in lots
-        said = ((key, "its name"),) if there else ()
-        return (Proposal("key", "photo", named["photo"], "-".join(own), said),)
-    likely, listed = LIKELY.search(text), LISTED.search(text)
-    places = likely["all"].split(" or ") if likely else []
-    places += [listed["address"]] if listed else []
+def proposed(doubt: Doubt, lots: Lots) -> tuple[Proposal, ...]:
+    """Propose what mends a doubt: another key of a photograph, or a front's order."""
+    own = (doubt.block, doubt.lot)
+    if doubt.photo:
+        said = (("-".join(doubt.named), "its name"),) if doubt.named in lots else ()
+        return (Proposal("key", "photo", doubt.photo, "-".join(own), said),)
+    places = [*doubt.likely, *filter(None, [doubt.address])]
     block = [one for (name, _), some in lots.items() if name == own[0] for one in some]
     proposals = []
     for front in lots.get(own, ()):

@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
+from nostalgin_core.catalogue import Doubt
 from pipelines.cli import app
 from pipelines.console import Voice, indexed
 from pipelines.index.index import Indexed, index
@@ -141,7 +142,7 @@ def stubbed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pipelines.view.Server.serve_forever", lambda _: None)
     front = {"unseen": 0.1, "left": 0.0, "photo": "5_1.png", "views": ()}
     monkeypatch.setattr("pipelines.explain.explain_front", lambda *_: front)
-    none = Indexed(0, 0, 0, (), 0, (), ("a warning",))
+    none = Indexed(0, 0, 0, (), 0, (), (Doubt("a warning"),))
     monkeypatch.setattr("pipelines.demo.painted", lambda *_, **__: ("", ""))
     monkeypatch.setattr("pipelines.index.index", lambda *_, **__: none)
     monkeypatch.setattr("pipelines.cli.demo.built", lambda *_, **__: None)

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -290,3 +291,36 @@ def test_a_build_obeys_and_does_again_only_the_block(tmp_path: Path) -> None:
     assert len(artifacts(city, "block")) == report.blocks + 1
     (city / "corrections.csv").unlink()
     assert built(city).run == first.run
+
+
+class Looked(Row):
+    """A row that counts how often anybody looks at it, or copies it."""
+
+    looks = 0
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in ("front", "photo"):
+            Looked.looks += 1
+        return super().__getattribute__(name)
+
+
+def looks(folder: Path, lots: int) -> int:
+    """Correct every lot of a street in three ways, and count the looks at its rows."""
+    rows = [
+        Looked(n, "/photos", f"5_{n}.png", front(n, 0), "", {}) for n in range(lots)
+    ]
+    rows = [replace(r, front=replace(r.front, ring=r.number // 5)) for r in rows]
+    lines = [f",5-{n}-0,,width_m,6.1," for n in range(lots)]
+    lines += [f"5_{n}.png,,,key,5-{lots - 1 - n}," for n in range(lots)]
+    lines += [f",5-{n}-0,,order,2.5," for n in range(lots)]
+    lines += [f",5-{n}-9,,width_m,6.1," for n in range(lots)]
+    given = read(folder, *lines)
+    Looked.looks = 0
+    made = corrections.applied(rows, given)
+    assert len(made.changes) == 3 * lots
+    assert len(made.rejections) == lots
+    return Looked.looks
+
+
+def test_twice_the_rows_and_corrections_cost_twice_the_work(tmp_path: Path) -> None:
+    assert looks(tmp_path, 200) < 2.2 * looks(tmp_path, 100)

@@ -104,3 +104,31 @@ def test_what_build_wrote_is_no_photo(city: str, photos: Path) -> None:
         (own / name).parent.mkdir(parents=True, exist_ok=True)
         (own / name).write_bytes(b"x")
     assert images(photos, str(own))[0] == ["993_1.jpg", "993_2.jpg"]
+
+
+@pytest.mark.parametrize("writes", range(4))
+def test_who_is_killed_while_writing_a_manifest_leaves_the_old_or_the_new(
+    photos: Path, writes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = indexed(photos)
+    city = photos.parent / "city"
+    old = manifest.read(Store(str(city))).rows
+    (photos / "993_3.jpg").write_bytes(b"x")
+    left = [writes]
+    write = Store.write_bytes
+
+    def killed(store: Store, name: str, data: bytes) -> None:
+        if not left[0]:
+            raise KeyboardInterrupt
+        left[0] -= 1
+        write(store, name, data)
+
+    with monkeypatch.context() as there:
+        there.setattr(Store, "write_bytes", killed)
+        with pytest.raises(KeyboardInterrupt):
+            indexed(photos)
+    found = manifest.read(Store(str(city)))
+    assert not found.mended
+    assert len(found.rows) == len(old) + (writes > 1)
+    assert indexed(photos).photos == first.photos + 1  # and nothing is lost by it
+    assert not (city / "manifest.parquet.coming").exists()
