@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from pipelines import plural
 from pipelines.cli.launch import ended, patient, told
 from pipelines.console import Voice, errors, fail, hushed
 from pipelines.stopping import Stopped, heeded
@@ -47,7 +48,7 @@ def asking(
 
         if dry:
             return build.boards_read(options, root, names)
-        words = f"looking at the boards of {len(names)} photos"
+        words = f"looking at the boards of {plural.of(len(names), 'photo')}"
         voice.say("boards", words, photos=len(names))
         plain = (Unlocked, build.Lost, build.Unrun)
         try:

@@ -8,6 +8,7 @@ from pipelines.cli.launch import (
     TOO_MANY_REJECTIONS,
     JsonLines,
     ModelsFolder,
+    Retry,
     built,
 )
 from pipelines.console import Quiet, Voice, errors
@@ -36,9 +37,6 @@ MaxRejected = Annotated[
 ]
 PublishAnyway = Annotated[
     bool, typer.Option("--publish-anyway", help="Replace a site that shows more, too.")
-]
-Retry = Annotated[
-    bool, typer.Option("--retry", help="Try again what ended its process twice.")
 ]
 Webp = Annotated[
     bool, typer.Option("--webp/--no-webp", help="Textures as WebP, or as PNG.")

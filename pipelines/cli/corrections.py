@@ -4,6 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
+from pipelines import plural
 from pipelines.cli.launch import TOO_MANY_REJECTIONS, JsonLines
 from pipelines.console import Quiet, Voice, errors, fail
 
@@ -58,7 +59,7 @@ def corrections_command(
         facts = {"key": why.key, "reason": why.reason, "detail": why.detail}
         voice.say("rejected", words, **facts)
     count = len(made.changes)
-    words = f"{count} corrections, {len(made.rejections)} rejected"
+    words = f"{plural.of(count, 'correction')}, {len(made.rejections)} rejected"
     voice.say("done", words, corrections=count, rejected=len(made.rejections))
     if made.rejections:
         raise typer.Exit(TOO_MANY_REJECTIONS)

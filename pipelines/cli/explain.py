@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from pipelines import bounded
+from pipelines import bounded, plural
 from pipelines.cli.launch import TOO_MANY_REJECTIONS, ModelsFolder
 from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
@@ -82,8 +82,9 @@ def tell(report: dict[str, Any], out: Path, voice: Voice) -> None:
     """Tell what was found in a photo, and where the pictures of it lie."""
     targets = sum(one["target"] for one in report["facades"])
     voice.echo(
-        f"{len(report['facades'])} facades ({targets} target), "
-        f"{len(report['occluders'])} occluders, {report['seconds']['total']:.1f} CPU s"
+        f"{plural.of(len(report['facades']), 'facade')} ({targets} target), "
+        f"{plural.of(len(report['occluders']), 'occluder')}, "
+        f"{report['seconds']['total']:.1f} CPU s"
     )
     for one in report["rejections"]:
         which = f" facade {one['facade']}" if one.get("facade") is not None else ""

@@ -5,6 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
+from pipelines import plural
 from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
@@ -44,7 +45,8 @@ def export_command(
 
     def tell(block: str, done: int) -> None:
         if done % 100 == 0:
-            voice.say("exported", f"{done} blocks", block=block, done=done)
+            words = plural.of(done, "block")
+            voice.say("exported", words, block=block, done=done)
 
     target = out or city / "exports"
     wanted = list(dict.fromkeys(one.strip() for one in to.split(",") if one.strip()))
@@ -55,5 +57,4 @@ def export_command(
     except OSError as problem:
         raise unwritable(target, problem) from problem
     for name, count in counts.items():
-        files = "1 file" if count == 1 else f"{count} files"
-        voice.echo(f"{target / name}: {files}")
+        voice.echo(f"{target / name}: {plural.of(count, 'file')}")

@@ -4,6 +4,7 @@ from typing import Annotated, Final
 
 import typer
 
+from pipelines import plural
 from pipelines.cli.launch import City, JsonLines
 from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
@@ -48,8 +49,9 @@ def gc_command(
     words = "would be dropped" if dry_run else "dropped"
     Voice(errors, machine=json_lines, quiet=quiet).say(
         "done",
-        f"{done.artifacts} artifacts and {len(done.runs)} runs {words}, "
-        f"{len(done.kept_runs)} runs kept",
+        f"{plural.of(done.artifacts, 'artifact')} and "
+        f"{plural.of(len(done.runs), 'run')} {words}, "
+        f"{plural.of(len(done.kept_runs), 'run')} kept",
         artifacts=done.artifacts,
         packs=done.packs,
         runs=list(done.runs),

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from pipelines import plural
 from pipelines.cli.asking import Whose, asking
 from pipelines.cli.index import kept_from_others
 from pipelines.console import Voice, fail
@@ -57,8 +58,9 @@ def indexed_again(city: str, voice: Voice, models: str, beam: Sequence[str]) -> 
     made = kept_from_others(city, work)
     voice.say(
         "indexed",
-        f"indexed again: {made.photos} photos, {made.fronts} fronts in {made.blocks} "
-        f"blocks, {len(made.without_front)} photos without a front",
+        f"indexed again: {plural.of(made.photos, 'photo')}, "
+        f"{plural.of(made.fronts, 'front')} in {plural.of(made.blocks, 'block')}, "
+        f"{plural.of(len(made.without_front), 'photo')} without a front",
         photos=made.photos,
         fronts=made.fronts,
         blocks=made.blocks,

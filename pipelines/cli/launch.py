@@ -25,6 +25,12 @@ ModelsFolder = Annotated[
     typer.Option("--models", help="Folder with other networks and their models.lock."),
 ]
 City = Annotated[str, typer.Argument(help="The city folder.")]
+Retry = Annotated[
+    bool,
+    typer.Option(
+        "--retry", help="Try again what crashed too often or ended its process."
+    ),
+]
 JsonLines = Annotated[
     bool, typer.Option("--json", help="Tell progress as JSON, a line an event.")
 ]

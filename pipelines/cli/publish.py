@@ -5,6 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
+from pipelines import plural
 from pipelines.console import Quiet, Voice, errors, fail, unwritable
 
 EXAMPLES: Final = """
@@ -35,6 +36,6 @@ def publish_command(
     except OSError as problem:
         raise unwritable(folder, problem) from problem
     voice = Voice(errors, quiet=quiet)
-    voice.echo(f"{done.files} files, {done.size:,} bytes, lie in {done.folder}")
+    voice.echo(f"{plural.of(done.files, 'file')}, {done.size:,} bytes: {done.folder}")
     voice.echo("copy them to any web host: they need no server program, and no build")
     voice.echo(f"to try it: nostalgin view {done.folder}")

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from pipelines import stopping
+from pipelines import plural, stopping
 from pipelines.cli.grown import indexed_again, indexed_dry
 from pipelines.cli.launch import (
     TOO_MANY_REJECTIONS,
     City,
     JsonLines,
     ModelsFolder,
+    Retry,
     failing,
     patient,
     told,
@@ -56,6 +57,7 @@ def reprocess_command(
     index: Annotated[
         bool, typer.Option(help="Index a folder again that is not what it was.")
     ] = True,
+    retry: Retry = False,
     models: ModelsFolder = None,
     json_lines: JsonLines = False,
     quiet: Quiet = False,
@@ -68,16 +70,17 @@ def reprocess_command(
     """
     voice = Voice(errors, machine=json_lines, quiet=quiet)
     if rollback:
-        if dry_run or thorough or budget or context.args:
+        if dry_run or thorough or budget or retry or context.args:
             raise typer.BadParameter("--rollback takes no other options of a run")
         again(city, rollback, voice)
         return
     asked = {"budget": budget, "thorough": thorough, "index": index}
     if dry_run:
-        tell(looked(city, voice, str(models or ""), **asked), voice)
+        tell(looked(city, voice, str(models or ""), **asked, retry=retry), voice)
         return
     with stopping.heeded(patient):
-        done = redone(city, voice, str(models or ""), context.args, **asked)
+        beam = [*context.args, *["--retry"] * retry]
+        done = redone(city, voice, str(models or ""), beam, **asked)
     if done.report is not None and done.report.held:
         raise typer.Exit(TOO_MANY_REJECTIONS)
 
@@ -121,8 +124,9 @@ def redone(
         voice.say("done", lines(done.plan.told())[0], **done.plan.told())
     else:
         later = done.plan.later
-        words = f"; {later} stale photographs are left for the next time"
-        counts = f"{done.plan.photos} photographs and {done.plan.blocks} blocks redone"
+        words = f"; {plural.of(later, 'stale photograph')} left for the next time"
+        counts = f"{plural.of(done.plan.photos, 'photograph')} and "
+        counts += f"{plural.of(done.plan.blocks, 'block')} redone"
         known = done.plan.told() | {"spent_cpu_seconds": done.report.cpu_seconds}
         counts += spent(done.plan.cpu_seconds, done.report.cpu_seconds)
         voice.say("reprocessed", counts + words * bool(later), **known)
@@ -173,8 +177,9 @@ def tell(plan: "Plan", voice: Voice) -> None:
 def lines(known: dict[str, Any]) -> list[str]:
     """Tell a plan to people."""
     refused = known["corrections_rejected"]
-    words = f"{refused} corrections are rejected: `nostalgin corrections` tells why"
-    last = [words] if refused else []
+    words = f"{plural.of(refused, 'correction')} rejected: `nostalgin corrections`"
+    last = [f"{words} tells why"] if refused else []
+    last += left_alone(known["left_alone"], known["left_alone_first"])
     if not (known["photos"] or known["blocks"] or known["moved"]):
         said = f"nothing is stale: run {known['before']} is what is asked for"
         return [said, *last]
@@ -183,9 +188,9 @@ def lines(known: dict[str, Any]) -> list[str]:
     photos = known["photos_asked"] + known["photos_gone"]
     blocks = known["blocks_asked"] + known["blocks_gone"]
     said = [
-        f"{known['photos']} of {photos} photographs are to be redone"
+        f"{known['photos']} of {plural.of(photos, 'photograph')} to be redone"
         + (f" ({causes})" if causes else ""),
-        f"{known['blocks']} of {blocks} blocks are looked at again"
+        f"{known['blocks']} of {plural.of(blocks, 'block')} to be looked at again"
         + (f" ({rows})" if rows else ""),
     ]
     if known["moved"]:
@@ -197,5 +202,20 @@ def lines(known: dict[str, Any]) -> list[str]:
             f"estimated: {known['cpu_seconds']:.0f} CPU s, {known['seconds']:.0f} s"
         )
     if known["later"]:
-        said.append(f"{known['later']} stale photographs are left for the next time")
+        later = plural.of(known["later"], "stale photograph")
+        said.append(f"{later} left for the next time")
     return [*said, *last]
+
+
+def left_alone(count: int, first: Sequence[str]) -> list[str]:
+    """Tell what crashed too often to be tried again, if something did."""
+    if not count:
+        return []
+    names = ", ".join(first) + f" and {count - len(first)} more" * (count > len(first))
+    what = plural.of(count, "photograph or block", "photographs and blocks")
+    return [
+        (
+            f"{what} let be after crashes: {names}; try again by "
+            "`nostalgin reprocess --retry`"
+        )
+    ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
+from pipelines import plural
 from pipelines.cli.launch import City, JsonLines, ModelsFolder
 from pipelines.cli.reprocess import lines, looked
 from pipelines.console import Quiet, Voice, errors, fail
@@ -71,7 +72,8 @@ def row(one: "Past") -> str:
     took = "" if one.seconds is None else f"{one.seconds:.0f} s"
     facts = []
     if one.photos is not None and one.shown_share is not None:
-        facts.append(f"{one.photos} photos, {one.shown_share:.0%} of them shown")
+        photos = plural.of(one.photos, "photo")
+        facts.append(f"{photos}, {one.shown_share:.0%} of them shown")
     if one.cpu_seconds is not None:
         facts.append(f"{one.cpu_seconds:.0f} CPU s")
         if one.estimated_cpu_seconds:
@@ -84,7 +86,7 @@ def row(one: "Past") -> str:
 def timed(now: "State") -> Iterator[str]:
     """Tell where a schedule stands."""
     last = now.last
-    made = f", {last.photos} photographs" if last.photos else ""
+    made = f", {plural.of(last.photos, 'photograph')}" if last.photos else ""
     left = f", {last.later} left for the next time" if last.later else ""
     missed = f", made up for {last.missed} missed before it" if last.missed else ""
     yield f"last due {last.when:{DAY}} UTC: {last.outcome}{made}{left}{missed}"
@@ -96,7 +98,8 @@ def timed(now: "State") -> Iterator[str]:
     for one in now.failures[-MOST:]:
         yield f"failed {one.when:{DAY}} UTC: {one.detail}"
     if len(now.failures) > MOST:
-        yield f"and {len(now.failures) - MOST} failures before: --json tells all"
+        more = plural.of(len(now.failures) - MOST, "failure")
+        yield f"and {more} before: --json tells all"
 
 
 def stale(city: str, models: str, voice: Voice) -> None:

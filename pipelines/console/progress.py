@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any, Final, Self
 
+from pipelines import plural
 from pipelines.console.voice import Voice
 
 PACE: Final = "rectify"  # by which stage photos a minute are counted
@@ -99,7 +100,8 @@ class Watch:
     def _text(self, facts: dict[str, Any]) -> str:
         parts = [f"{stage} {done}" for stage, done in facts["there"].items()]
         rate, left = facts["photos_per_minute"], facts["seconds_left"]
-        words = f"{', '.join(parts)} of {self.photos} photos, {rate} photos a minute"
+        photos = plural.of(self.photos, "photo")
+        words = f"{', '.join(parts)} of {photos}, {rate} photos a minute"
         return words if left is None else f"{words}, about {spelled(left)} left"
 
 

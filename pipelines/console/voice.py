@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
 
+from pipelines import plural
 from pipelines.console.alike import folded
 from pipelines.console.failure import echo, fail, harmless, unheard
 
@@ -86,19 +87,21 @@ def summed(report: "Report", voice: Voice) -> None:
     """Tell what came of a build."""
     told_rejections(report.rejections if voice.machine else report.grave(), voice)
     for reason, count in () if voice.machine else report.reasons():
-        voice.say("reason", f"{count} times rejected by {reason}")
+        times = plural.of(count, "time")
+        voice.say("reason", f"{times} rejected by {reason}")
     if report.healed:
-        words = f"{report.healed} damaged artifacts were made again"
+        words = f"{plural.of(report.healed, 'damaged artifact')} made again"
         voice.say("healed", words, artifacts=report.healed)
     table = f"runs/{report.run}/rejections.parquet"
     where = f"; `nostalgin report` shows all rejections, {table} has them"
     voice.say(
         "done",
-        f"run {report.run}: {report.photos} photos, {report.rejected_photos} of them "
-        f"gave nothing; {report.facades} facades; {report.blocks} blocks with "
-        f"{report.buildings} buildings, {report.assumed} of them assumed; "
-        f"{report.widths_assumed} of {report.fronts} widths and "
-        f"{report.heights_assumed} of {report.buildings} heights are assumed"
+        f"run {report.run}: {plural.of(report.photos, 'photo')}, "
+        f"{report.rejected_photos} of them gave nothing; "
+        f"{plural.of(report.facades, 'facade')}; {plural.of(report.blocks, 'block')} "
+        f"with {plural.of(report.buildings, 'building')}, {report.assumed} of them "
+        f"assumed; {report.widths_assumed} of {plural.of(report.fronts, 'width')} and "
+        f"{report.heights_assumed} of {plural.of(report.buildings, 'height')} assumed"
         + where
         * report.tabled,
         run=report.run,
@@ -124,15 +127,15 @@ def indexed(made: "Indexed", city: str, voice: Voice) -> None:
     told_rejections(named, voice)
     if made.boards or len(made.witnesses) > 1:
         said = ", ".join(f"{count} {one}" for one, count in made.witnesses.items())
-        words = (
-            f"by name, list and {made.boards} boards: {said}: {city}/readings.parquet"
-        )
+        boards = plural.of(made.boards, "board")
+        words = f"by name, list and {boards}: {said}: {city}/readings.parquet"
         voice.say("witnesses", words, boards=made.boards, **made.witnesses)
     voice.say(
         "done",
-        f"{made.photos} photos, {made.fronts} fronts in {made.blocks} blocks, "
-        f"{made.without_photo} fronts without a photo, {made.widths_assumed} widths "
-        f"assumed: {city}/manifest.csv",
+        f"{plural.of(made.photos, 'photo')}, {plural.of(made.fronts, 'front')} in "
+        f"{plural.of(made.blocks, 'block')}, "
+        f"{plural.of(made.without_photo, 'front')} without a photo, "
+        f"{plural.of(made.widths_assumed, 'width')} assumed: {city}/manifest.csv",
         photos=made.photos,
         fronts=made.fronts,
         blocks=made.blocks,
@@ -142,5 +145,6 @@ def indexed(made: "Indexed", city: str, voice: Voice) -> None:
     )
     if made.astray:
         count = len(made.without_front)
-        words = f"{count} of {made.photos} photos found no place: is it their list?"
+        photos = plural.of(made.photos, "photo")
+        words = f"{count} of {photos} found no place: is it their list?"
         voice.say("homeless", words, photos_without_front=count)

@@ -6,6 +6,7 @@ The file's name is never looked at: the picture must speak. What is written foll
 
 import json
 import os
+import re
 import resource
 import sys
 import time
@@ -22,10 +23,16 @@ from nostalgin_core.arrays import Gray
 from nostalgin_core.records import Drawn, Elevation, Facade, Instance, Photo, Rejection
 from nostalgin_core.rectify import lines
 from nostalgin_core.steps import Networks, Stages
+from pipelines import bounded
 from pipelines.explain import draw
 from pipelines.explain.panel import panel
 
 NAME: Final = "photo"  # what stages are told the photo is called
+TOLD: Final = "explain.json"
+OURS: Final = re.compile(
+    r'"(facade_\d+_(?:mask|amodal|alpha|rectified|elevation|evidence)\.png'
+    r'|occluder_\d+_[a-z]+\.png)"'
+)
 KIB: Final = 1024
 
 
@@ -63,6 +70,7 @@ def explain(
     if made.photo is None:
         raise Unreadable(made.rejections[0].reason + ": " + made.rejections[0].detail)
     out.mkdir(parents=True, exist_ok=True)
+    clear(out)
     report = written(made, made.photo, out)
     before = time.process_time()
     pictures(made, out)
@@ -71,8 +79,25 @@ def explain(
     report["seconds"] = {stage: round(spent, 4) for stage, spent in seconds.items()}
     report["peak_rss_bytes"] = peak_rss_bytes()
     text = json.dumps(report, indent=1) + "\n"
-    put(out / "explain.json", text.encode())
+    put(out / TOLD, text.encode())
     return report
+
+
+def clear(out: Path) -> None:
+    """Take away what an earlier photo left in a folder, and nothing else.
+
+    That is what its explain.json names, under names that we give.
+    """
+    try:
+        told = bounded.read(out / TOLD, bounded.LOCK_BYTES).decode()
+    except (OSError, ValueError):
+        return
+    (out / TOLD).unlink()
+    named = set(OURS.findall(told))
+    named |= {name.replace("_evidence.", "_evidence_colours.") for name in named}
+    for name in sorted(named | {"photo.png", "panel.png"}):
+        if not (out / name).is_dir():
+            (out / name).unlink(missing_ok=True)
 
 
 def timed(

@@ -19,11 +19,10 @@ from pipelines.index.manifest import Unusable
 from pipelines.index.roots import rooted
 from pipelines.reprocess.now import Now
 from pipelines.reprocess.published import Published
-from pipelines.reprocess.verdicts import STAGES
+from pipelines.reprocess.verdicts import SMALL, STAGES
 from pipelines.store import Damaged, Shelf, Store, absent
 from pipelines.store.versions import Versions
 
-SMALL: Final = "thumbnail"
 SLACK_NS: Final = 2_000_000_000  # by which clocks of machines and disks may differ
 Stamp = tuple[int, int]  # bytes, nanoseconds
 
@@ -224,12 +223,13 @@ def made(
 def wanted(place: int, reached: int | None, newer: bool) -> bool:  # noqa: FBT001
     """Tell whether a stage's artifact of a photograph is expected to be there.
 
-    `reached` is the stage that rejected it; a thumbnail is there of what was decoded.
+    `reached` is the stage that rejected it; a thumbnail is there of what was decoded,
+    unless that is what was rejected.
     """
     if reached is None:
         return True
     if place == len(STAGES):
-        return reached > 0
+        return 0 < reached < len(STAGES)
     return place < reached or (newer and place == reached)
 
 

@@ -11,8 +11,10 @@ from pipelines.reprocess.cost import rates
 from pipelines.reprocess.now import Now
 from pipelines.reprocess.published import Published, published
 from pipelines.reprocess.stale import CAUSES, Stale, stale
+from pipelines.reprocess.verdicts import SMALL, STAGES
 
-PHOTO_STAGES: Final = ("segment", "matte", "rectify", "thumbnail")
+PHOTO_STAGES: Final = (*STAGES, SMALL)
+SOME: Final = 5  # of what is left alone, by name
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,8 @@ class Plan:
             "blocks_asked": self.blocks_asked,
             "blocks_gone": self.blocks_gone,
             "corrections_rejected": self.now.mended.rejected,
+            "left_alone": len(self.stale.left),
+            "left_alone_first": list(self.stale.left[:SOME]),
             "causes": {name: n for name, n in causes.items() if n},
             "blocks_by_cause": {name: n for name, n in blocks.items() if n},
             "moved": self.stale.moved,
@@ -106,7 +110,12 @@ class Plan:
 
 
 def planned(
-    now: Now, *, budget: int = 0, thorough: bool = False, workers: int = 1
+    now: Now,
+    *,
+    budget: int = 0,
+    thorough: bool = False,
+    retry: bool = False,
+    workers: int = 1,
 ) -> Plan:
     """Find what is stale and choose what is redone: all, or `budget` photographs.
 
@@ -118,7 +127,7 @@ def planned(
         Damaged: if the published run's tables are.
     """
     before = published(now.store)
-    found = stale(now, before, thorough=thorough)
+    found = stale(now, before, thorough=thorough, retry=retry)
     labels = chosen(found, budget)
     redone = found.groups.within(labels)
     photos = int(np.isin(found.photos, redone).sum())

@@ -15,7 +15,7 @@ from pipelines.index import asked
 from pipelines.index.asked import Asked, short
 from pipelines.index.roots import rooted
 from pipelines.models import Models
-from pipelines.reprocess import merged
+from pipelines.reprocess import merged, tries
 from pipelines.reprocess.now import now
 from pipelines.reprocess.plan import Plan, planned
 from pipelines.reprocess.stale import CAUSES
@@ -45,6 +45,8 @@ def reprocess(
 ) -> Reprocessed:
     """Find what is stale, redo it, and publish; without anything stale, do nothing.
 
+    The options' `retry` tries again what crashed too often or ended its process, too.
+
     Raises:
         Unusable, Damaged: if the manifest, or the published run, can't be read.
         Foreign, Lost, Busy, Unrun: as a build.
@@ -59,23 +61,34 @@ def reprocess(
         asked_now = now(store, models, schemes=build.schemes_of(ours))
         ours.allow_schemes = ",".join(asked_now.schemes)
         ours.no_webp = asked_now.png
-        plan = planned(asked_now, budget=budget, thorough=thorough, workers=workers)
+        asked = {"budget": budget, "thorough": thorough, "retry": ours.retry}
+        plan = planned(asked_now, **asked, workers=workers)
         if plan.nothing:
             return Reprocessed(plan)
         if healing(plan):
-            report = healed(options, plan, watch)
+            report = noted(plan, healed(options, plan, watch))
             if not recovered(plan, report):
                 kept(tell)
                 return Reprocessed(plan, report)
         asked_for = prepared(plan, ours)
         ahead = plan.later and not plan.same_versions
         if ahead:
-            report = made_ahead(options, asked_for, watch)
+            report = noted(plan, made_ahead(options, asked_for, watch))
             kept(tell)
             return Reprocessed(plan, report)
         report = build.carried_out(options, asked_for, (1, 1), tell, watch)
         merged.drop(store, report.run)
+        noted(plan, report)
         return Reprocessed(plan, report, shown=bool(report.blocks and not report.held))
+
+
+def noted(plan: Plan, report: Report) -> Report:
+    """Keep in how many runs each photograph and block has crashed by now."""
+    stale, now = plan.stale, plan.now
+    anew = np.isin(stale.causes, [CAUSES.index(one) for one in ("new", "changed")])
+    of = {"redone": plan.redone, "crashed": stale.crashed, "anew": stale.photos[anew]}
+    tries.keep(now.store, now.versions, tries.counted(stale.tried, report, **of))
+    return report
 
 
 def healing(plan: Plan) -> bool:

@@ -17,6 +17,7 @@ from pipelines.reprocess.now import Now
 from pipelines.reprocess.photographs import Fate, Shelves, fates, fresh, shelves
 from pipelines.reprocess.published import Published
 from pipelines.reprocess.sides import Groups, Side, Widths
+from pipelines.reprocess.tries import tries
 from pipelines.reprocess.verdicts import Verdicts, verdicts
 
 CAUSES: Final = ("new", "changed", "removed", "missing", "version")  # of photographs
@@ -40,6 +41,8 @@ class Stale:
     cut_before: Mapping[str, Widths] = field(default_factory=dict)  # as `Side.cut`
     crashed: np.ndarray = field(default_factory=lambda: NONE)  # names and blocks
     before: Published = field(repr=False, default=None)  # type: ignore[assignment]
+    left: tuple[str, ...] = ()  # names and blocks that crashed too often: let be
+    tried: Mapping[str, int] = field(default_factory=dict)  # in how many runs
 
     def count(self, cause: str) -> int:
         """Count the photographs that are stale for a reason."""
@@ -56,8 +59,12 @@ class Stale:
         return np.unique(np.concatenate([self.photos, *self.blocks.values()]))
 
 
-def stale(now: Now, before: Published, *, thorough: bool = False) -> Stale:
+def stale(
+    now: Now, before: Published, *, thorough: bool = False, retry: bool = False
+) -> Stale:
     """Find what is stale; `thorough`, with every photograph's bytes read and hashed.
+
+    To `retry` is to try again what crashed too often, or ended its process.
 
     Raises:
         Unusable: if the manifest can't be read.
@@ -68,7 +75,8 @@ def stale(now: Now, before: Published, *, thorough: bool = False) -> Stale:
     if before.rows_sha256 != now.rows_sha256:
         earlier = sides.side(before.asked(), now.store.root, before.directed())
     kept = shelves(now.store, now.versions, thorough=thorough)
-    known = verdicts(before, now.versions)
+    tried = tries(now.store, now.versions)
+    known = verdicts(before, now.versions, tried, retry=retry)
     found = list_of(photographs(now, before, after, kept, known, thorough=thorough))
     again = np.array(sorted(known.again), np.uint64)
     for name in np.intersect1d(again, after.names).tolist():
@@ -92,6 +100,8 @@ def stale(now: Now, before: Published, *, thorough: bool = False) -> Stale:
         earlier.cut,
         again,
         before,
+        tuple(sorted(known.left)),
+        tried,
     )
 
 

@@ -20,7 +20,7 @@ class Aside:
     store: Store
     versions: Versions  # of all stages: others may do better
     retry: bool = False  # as if there were none
-    _known: frozenset[str] | None = field(default=None, init=False, compare=False)
+    _known: set[str] | None = field(default=None, init=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """Let every process look for itself."""
@@ -28,18 +28,27 @@ class Aside:
 
     def of(self, stage: str, element: Any) -> Rejection | None:
         """Tell why an element was put aside, if it was."""
-        if self._known is None:
-            self._known = frozenset(() if self.retry else self._names())
-        name = f"{self._key(stage, element)}.parquet"
-        if name not in self._known:
+        name = self._name(stage, element)
+        if self.retry or name not in self._listed():
             return None
         verdict = self.store.verdict(f"{self._folder()}/{name}")
         return verdict if isinstance(verdict, Rejection) else None
 
     def put(self, stage: str, element: Any, why: Rejection) -> None:
         """Remember an element."""
-        name = f"{self._key(stage, element)}.parquet"
-        self.store.keep(f"{self._folder()}/{name}", why)
+        self.store.keep(f"{self._folder()}/{self._name(stage, element)}", why)
+
+    def forget(self, stage: str, element: Any) -> None:
+        """Let an element be as others: it was tried again, and came through."""
+        name = self._name(stage, element)
+        if self.retry and name in self._listed():
+            self.store.drop(f"{self._folder()}/{name}")
+            self._listed().discard(name)
+
+    def _listed(self) -> set[str]:
+        if self._known is None:
+            self._known = set(self._names())
+        return self._known
 
     def _names(self) -> list[str]:
         try:
@@ -50,9 +59,9 @@ class Aside:
     def _folder(self) -> str:
         return f"{ARTIFACTS}/aside/{key_of(json.dumps(vars(self.versions)))[:16]}"
 
-    def _key(self, stage: str, element: Any) -> str:
+    def _name(self, stage: str, element: Any) -> str:
         told = hashlib.sha256(spelt(element).encode(errors="surrogateescape"))
-        return key_of(stage, told.hexdigest())
+        return f"{key_of(stage, told.hexdigest())}.parquet"
 
 
 def spelt(element: Any) -> str:

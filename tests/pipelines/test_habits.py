@@ -85,7 +85,7 @@ def test_a_summary_says_how_many_widths_are_assumed(tmp_path: Path) -> None:
     folder = photos(tmp_path / "photos", "5_1.png", "5_2.png")
     (tmp_path / "list.csv").write_text("block,lot,width_m\n5,1,6\n5,2,\n")
     words = ("index", folder, "--catalogue", tmp_path / "list.csv")
-    assert "1 widths assumed" in nostalgin(*words, "-o", tmp_path / "city").output
+    assert "1 width assumed" in nostalgin(*words, "-o", tmp_path / "city").output
 
 
 def commands(group: Any, *path: str) -> Iterator[tuple[str, Any]]:

@@ -9,7 +9,7 @@ import pytest
 
 from nostalgin_core import evidence
 from nostalgin_core.steps import Networks
-from pipelines.explain.explain import Unreadable, explain, finite, saved
+from pipelines.explain.explain import Unreadable, clear, explain, finite, saved
 from pipelines.models import Models
 from tests.data import ROOT
 from tests.pipelines import painted
@@ -192,3 +192,28 @@ def test_the_schema_travels_with_the_package(out: Path) -> None:
 def test_a_picture_that_can_not_be_written_is_no_secret(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="gone"):
         saved(tmp_path / "gone", "photo", np.zeros((4, 4), np.uint8))
+
+
+def test_a_used_folder_holds_the_last_photo_alone_and_what_is_not_ours(
+    networks: Networks, out: Path, tmp_path: Path
+) -> None:
+    used = tmp_path / "used"
+    explain(painted.photo(2), used, networks, started=0.0, every=True)
+    foreign = {used / "notes.txt", used / "facade_9_mask.png"}
+    for path in foreign:
+        path.write_text("mine")
+    explain(painted.photo(1), used, networks, started=0.0)
+    fresh = {path.name for path in out.iterdir()}
+    assert {path.name for path in used.iterdir()} == fresh | {p.name for p in foreign}
+    assert {path.read_text() for path in foreign} == {"mine"}
+
+
+def test_a_file_that_names_others_files_takes_none_away(tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    kept = [tmp_path / "kept" / "facade_0_mask.png", tmp_path / "letter.png"]
+    for path in kept:
+        path.write_bytes(b"x")
+    named = '["kept/facade_0_mask.png", "../x.png", "letter.png", "facade_7_mask.png"]'
+    (tmp_path / "explain.json").write_text(named)
+    clear(tmp_path)
+    assert all(path.exists() for path in kept)

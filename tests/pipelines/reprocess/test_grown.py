@@ -138,7 +138,7 @@ def test_the_status_tells_times_failures_and_what_is_stale(wished: Path) -> None
     assert "last due 2026-11-21 03:17 UTC: done, made up for 2 missed" in said
     assert "the first 2026-11-22 03:17 UTC" in said
     assert "failed 2026-11-20 03:17 UTC: full" in said
-    assert "1 of 5 photographs are to be redone (1 new)" in said
+    assert "1 of 5 photographs to be redone (1 new)" in said
     assert "to be redone" not in run(wished, "status", "--brief").stdout
     lines = run(wished, "status", "--json").stdout.splitlines()
     schedule, stale = (json.loads(one) for one in lines[-2:])
