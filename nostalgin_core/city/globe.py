@@ -6,11 +6,11 @@ true (azimuthal equidistant), and others by one in a million ten kilometres away
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
-from pyproj import Geod, Transformer
 
 from nostalgin_core.arrays import Points
 from nostalgin_core.city.plot import Move, Vector, carried
@@ -18,7 +18,6 @@ from nostalgin_core.city.tileset import Place
 
 Degrees = Float[np.ndarray, "n 2"]  # longitude, latitude
 
-WGS84 = Geod(ellps="WGS84")
 STEP_M = 100.0  # a way long enough to tell where it leads
 DIGITS = 10  # of a degree: hundredths of a millimetre
 
@@ -79,7 +78,7 @@ def on_globe(plane: Plane, moves: Mapping[str, Move]) -> dict[str, tuple[Place, 
     for index, move in enumerate(moves.values()):
         start[index], end[index] = carried(move, np.array([[0.0, 0.0], [STEP_M, 0.0]]))
     at, to = plane.degrees(start), plane.degrees(end)
-    azimuth, _, _ = WGS84.inv(at[:, 0], at[:, 1], to[:, 0], to[:, 1])
+    azimuth, _, _ = _wgs84().inv(at[:, 0], at[:, 1], to[:, 0], to[:, 1])
     turns = np.radians(90.0 - np.asarray(azimuth))
     turns = (turns + np.pi) % (2 * np.pi) - np.pi
     placed = [Place(*(float(one) for one in row)) for row in np.round(at, DIGITS)]
@@ -89,11 +88,20 @@ def on_globe(plane: Plane, moves: Mapping[str, Move]) -> dict[str, tuple[Place, 
 
 def metres_apart(a: Vector, b: Vector) -> float:
     """Measure the shortest way over the globe between two places in degrees."""
-    return float(WGS84.inv(a[0], a[1], b[0], b[1])[2])
+    return float(_wgs84().inv(a[0], a[1], b[0], b[1])[2])
+
+
+@cache
+def _wgs84() -> Any:  # noqa: ANN401 - what is not loaded yet
+    from pyproj import Geod  # noqa: PLC0415 - slow to load, and no stage needs it
+
+    return Geod(ellps="WGS84")
 
 
 @lru_cache(maxsize=4)
-def _transformers(origin: Place) -> tuple[Transformer, Transformer]:
+def _transformers(origin: Place) -> tuple[Any, Any]:
+    from pyproj import Transformer  # noqa: PLC0415 - the same
+
     plane = (
         f"+proj=aeqd +lon_0={origin.longitude_deg} +lat_0={origin.latitude_deg} "
         "+datum=WGS84 +units=m"

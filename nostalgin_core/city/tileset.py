@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
-from pyproj import Transformer
 
 Matrix4 = Float[np.ndarray, "4 4"]
 Json = dict[str, Any]
@@ -129,7 +128,9 @@ def _turned(turn_rad: float) -> Matrix4:
 
 
 @cache  # making one takes a millisecond, and a city has thousands of blocks
-def _to_ecef() -> Transformer:
+def _to_ecef() -> Any:  # noqa: ANN401 - what is not loaded yet
+    from pyproj import Transformer  # noqa: PLC0415 - slow, and no stage needs it
+
     return Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
 
 

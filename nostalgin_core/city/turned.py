@@ -8,7 +8,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.spatial import KDTree
+import scipy
 
 from nostalgin_core.arrays import Points
 from nostalgin_core.city.city import places
@@ -41,7 +41,9 @@ def expected(
             continue
         there = np.array([middles_m[one.block] for one in group])
         here = np.array([centre(moved(o, relative[o.block])) for o in group])
-        _, near = KDTree(there).query(there, k=min(NEIGHBOURS, len(group)))
+        _, near = scipy.spatial.KDTree(there).query(
+            there, k=min(NEIGHBOURS, len(group))
+        )
         for one, those in zip(group, np.asarray(near), strict=True):
             turn = _turn(here[those], there[those])
             if turn is not None:

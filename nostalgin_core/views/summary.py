@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+import scipy
 from jaxtyping import Float32
-from scipy.cluster.vq import kmeans2, vq
 
 from nostalgin_core.views.marks import Marks
 
@@ -33,7 +33,11 @@ def words(some: Sequence[Marks]) -> Words:
     with warnings.catch_warnings():  # a word that no mark is like stays as it is
         warnings.simplefilter("ignore", UserWarning)
         rng = np.random.default_rng(0)
-        found, _ = kmeans2(every, WORDS, iter=ROUNDS, minit="points", rng=rng)
+        found, _ = (
+            scipy.cluster.vq.kmeans2(  # which SciPy loads when it is first asked for
+                every, WORDS, iter=ROUNDS, minit="points", rng=rng
+            )
+        )
     return found.astype(np.float32)
 
 
@@ -41,7 +45,7 @@ def summary(one: Marks, by: Words) -> Summary:
     """Sum up marks by words, to a length of 1; 0 where there are none."""
     summed = np.zeros_like(by)
     if len(one.looks) and len(by):
-        word, _ = vq(one.looks, by)
+        word, _ = scipy.cluster.vq.vq(one.looks, by)
         np.add.at(summed, word, one.looks - by[word])
     lengths = np.linalg.norm(summed, axis=1, keepdims=True)
     summed = np.divide(summed, lengths, out=summed, where=lengths > 0).ravel()

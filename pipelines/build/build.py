@@ -10,12 +10,11 @@ from typing import Any, Final
 import apache_beam as beam
 from apache_beam.options.pipeline_options import PipelineOptions
 
-from pipelines import site, stopping
+from pipelines import plural, site, stopping
 from pipelines.build import cluster, rows, twin
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
-from pipelines.build.embedded import in_process
-from pipelines.build.isolation import POOL
+from pipelines.build.embedded import forked_ahead
 from pipelines.build.launched import launched
 from pipelines.build.noted import cpu_s, note, stages
 from pipelines.build.options import CityOptions, part
@@ -88,8 +87,9 @@ def readied(options: PipelineOptions) -> None:
         Unrun: if a cluster does not answer.
     """
     one_thread()
-    if in_process(options) and options.view_as(CityOptions).stage_seconds:
-        POOL.fill()
+    ours = options.view_as(CityOptions)
+    if ours.stage_seconds:
+        forked_ahead(options, ours.city)
     cluster.reached(options)  # which takes a second, where somebody is there
 
 
@@ -117,7 +117,8 @@ def carried_out(
     ours, store = options.view_as(CityOptions), asked_for.bench.store
     bench, todo, run = asked_for.bench, asked_for.todo, asked_for.todo.run
     counts = {"photos": todo.photos + todo.unplaced, "blocks": todo.blocks}
-    words = f"run {run}: {counts['photos']} photos, {counts['blocks']} blocks"
+    told = (plural.of(n, name.removesuffix("s")) for name, n in counts.items())
+    words = f"run {run}: {', '.join(told)}"
     tell("start", words, run=run, **counts)
     began = time.time()
     expected = {"estimated": asked_for.expected} if asked_for.expected else {}

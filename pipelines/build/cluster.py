@@ -8,6 +8,7 @@ import importlib
 import shutil
 import socket
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,10 +21,16 @@ from apache_beam.options.pipeline_options import (
     PortableOptions,
     StandardOptions,
 )
+from apache_beam.runners.runner import PipelineResult, PipelineState
 
 from pipelines.build.embedded import EMBEDDED
 
 WAIT_S: Final = 3.0  # for a host; one that is there answers in a second
+PATIENCE_S: Final = 60.0  # for a job that is cancelled to be over
+PAUSE_S: Final = 0.2
+UNSURE: Final = (
+    "its runner does not say that the job is over: see that it is before the next run"
+)
 DATAFLOW: Final = "apache_beam.runners.dataflow.internal.apiclient"
 LINES: Final = 8  # of what a runner says
 WITHIN: Final = ("embed", "[local]", "[auto]", "")  # the runner starts it by itself
@@ -98,6 +105,23 @@ def prism(given: str | None) -> str:
     beside = Path(sys.executable).with_name("prism")
     near = str(beside) if beside.is_file() else ""
     return given or near or shutil.which("prism") or ""
+
+
+def cancelled(result: PipelineResult) -> bool:
+    """Cancel a job, and tell whether it is over for sure, within `PATIENCE_S`.
+
+    Until then its workers may write, and the city folder is still ours.
+    """
+    until = time.monotonic() + PATIENCE_S
+    try:
+        result.cancel()
+        while not PipelineState.is_terminal(result.state):
+            if time.monotonic() > until:
+                return False
+            time.sleep(PAUSE_S)
+    except TROUBLES:
+        return False
+    return True
 
 
 @contextmanager

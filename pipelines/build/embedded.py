@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 from unittest import mock
 
 import grpc
@@ -21,8 +21,13 @@ from apache_beam.options.pipeline_options import (
     PipelineOptions,
     StandardOptions,
 )
-from apache_beam.runners.portability.fn_api_runner.fn_runner import FnApiRunner
 from apache_beam.transforms.environments import SubprocessSDKEnvironment
+
+from pipelines.build.isolation import POOL
+from pipelines.build.mould import MOULD, Cast
+
+if TYPE_CHECKING:  # its own workers load this file, too
+    from apache_beam.runners.portability.fn_api_runner.fn_runner import FnApiRunner
 
 EMBEDDED: Final = "FnApiRunner"
 WORKER: Final = "pipelines.build.worker"
@@ -41,28 +46,48 @@ class Woken(BaseException):
     """The main thread need not wait any longer."""
 
 
-def runner(options: PipelineOptions) -> FnApiRunner | None:
+def runner(options: PipelineOptions) -> "FnApiRunner | None":
     """Make the embedded runner where processes are asked of it, and change its options.
 
     Otherwise, and for other runners, None: Beam makes them from the options. More than
     one worker means processes, unless threads are asked for: the time between calls of
     ONNX Runtime, OpenCV and NumPy is Python's own.
     """
-    direct = options.view_as(DirectOptions)
-    asked = direct.direct_running_mode == "multi_processing"
-    threads = direct.direct_running_mode == "multi_threading"
-    processes = asked or (direct.direct_num_workers != 1 and not threads)
-    if options.view_as(StandardOptions).runner != EMBEDDED or not processes:
+    if not processes(options):
         return None
+    direct = options.view_as(DirectOptions)
+    from apache_beam.runners.portability.fn_api_runner.fn_runner import FnApiRunner
+
     direct.direct_running_mode = "in_memory"  # or else Beam takes its own command
     workers = SubprocessSDKEnvironment.from_command_string(command())
     return FnApiRunner(default_environment=workers)
+
+
+def processes(options: PipelineOptions) -> bool:
+    """Tell whether this machine's processes are asked for."""
+    direct = options.view_as(DirectOptions)
+    asked = direct.direct_running_mode == "multi_processing"
+    threads = direct.direct_running_mode == "multi_threading"
+    many = asked or (direct.direct_num_workers != 1 and not threads)
+    return many and options.view_as(StandardOptions).runner == EMBEDDED
 
 
 def in_process(options: PipelineOptions) -> bool:
     """Tell whether this process does the work itself."""
     near = options.view_as(StandardOptions).runner == EMBEDDED
     return near and options.view_as(DirectOptions).direct_num_workers == 1
+
+
+def forked_ahead(options: PipelineOptions, city: str) -> None:
+    """Fork what the work will need, before this process has threads and open files.
+
+    A client of object stores has threads, which no fork may share: there workers are
+    started from the beginning.
+    """
+    if in_process(options):
+        POOL.fill()
+    elif processes(options) and "://" not in city:
+        MOULD.fill()
 
 
 def command() -> str:
@@ -108,6 +133,24 @@ def ending_with_a_worker() -> Iterator[None]:
         finally:
             over.set()
             signal.signal(signal.SIGUSR1, before)
+
+
+@contextlib.contextmanager
+def from_the_mould() -> Iterator[None]:
+    """Have workers forked from the mould, where there is one."""
+    if not MOULD.ready:
+        yield
+        return
+    from apache_beam.runners.portability import local_job_service
+
+    class Popen:  # all that Beam asks of `subprocess` there
+        @staticmethod
+        def Popen(command: str, *, shell: bool, env: dict[str, str]) -> Cast:  # noqa: N802
+            del command, shell
+            return MOULD.start(env)
+
+    with mock.patch.object(local_job_service, "subprocess", Popen):
+        yield
 
 
 @contextlib.contextmanager

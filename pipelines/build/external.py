@@ -25,7 +25,9 @@ from apache_beam.portability.api import (
 from google.protobuf import json_format, text_format
 
 from pipelines.build.embedded import WORKER
+from pipelines.build.mould import MOULD, Cast
 
+Worker = subprocess.Popen[bytes] | Cast
 ENDPOINTS: Final = ("control", "logging", "status")
 WAIT_S: Final = 60.0  # for what a runner should answer
 GRACE_S: Final = 10.0
@@ -36,18 +38,13 @@ class External(beam_fn_api_pb2_grpc.BeamFnExternalWorkerPoolServicer):
 
     def __init__(self) -> None:
         """Begin with none."""
-        self._workers: dict[str, subprocess.Popen[bytes]] = {}
+        self._workers: dict[str, Worker] = {}
 
     def StartWorker(self, request: Any, _: Any) -> Any:  # noqa: N802 - Beam's name
         """Start a worker that calls where it is told to."""
         try:
             env = os.environ | environment(request, provision(request))
-            self._workers[request.worker_id] = subprocess.Popen(
-                [sys.executable, "-m", WORKER],
-                env=env,
-                stdin=subprocess.DEVNULL,
-                stdout=sys.stderr,
-            )
+            self._workers[request.worker_id] = started(env)
         except (OSError, grpc.RpcError) as problem:
             return beam_fn_api_pb2.StartWorkerResponse(error=str(problem))
         return beam_fn_api_pb2.StartWorkerResponse()
@@ -92,7 +89,19 @@ def environment(request: Any, info: Any) -> dict[str, str]:
     return told
 
 
-def ended(worker: subprocess.Popen[bytes]) -> None:
+def started(env: dict[str, str]) -> Worker:
+    """Start a worker, from the mould where there is one."""
+    if MOULD.ready:
+        return MOULD.start(env)
+    return subprocess.Popen(
+        [sys.executable, "-m", WORKER],
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=sys.stderr,
+    )
+
+
+def ended(worker: Worker) -> None:
     """Ask a worker to go, and see that it does."""
     worker.terminate()
     try:
@@ -108,6 +117,7 @@ def serve(host: str, port: int) -> None:
     Raises:
         OSError: if the address can't be had.
     """
+    MOULD.fill()
     pool = External()
     server = grpc.server(futures.ThreadPoolExecutor(max_workers=4))
     beam_fn_api_pb2_grpc.add_BeamFnExternalWorkerPoolServicer_to_server(pool, server)

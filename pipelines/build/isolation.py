@@ -25,6 +25,7 @@ from pipelines.build.supervisor import ATTEMPTS, Died, Done, Failed, Limits
 from pipelines.store import Aside, Unstored
 
 ASIDE: Final = "put aside"
+FIRST_FILE: Final = 3
 MOST_FILES: Final = 1 << 16  # that a process may well have open
 MEMBER: Final = 1 / 30  # of an element's time, for each member of a group
 REMEDY: Final = "`nostalgin build --retry` tries it again, with the limits given then"
@@ -49,7 +50,7 @@ class Supervisor:
         """
         self._connection, its = Pipe()
         fork = hasattr(os, "fork") and threading.active_count() == 1
-        self._wait = forked(its) if fork else started(its)
+        self._wait = waited(its) if fork else started(its)
         its.close()
 
     def ask(
@@ -78,17 +79,28 @@ def here() -> str:
         return ""
 
 
-def forked(its: Connection) -> Callable[[], object]:
-    """Fork a supervisor; of what this process has open it keeps its connection."""
+def waited(its: Connection) -> Callable[[], object]:
+    """Fork a supervisor, and give how to wait for its end."""
+    process = forked(its.fileno(), partial(supervisor.serve, its))
+    return partial(os.waitpid, process, 0)
+
+
+def forked(file: int, work: Callable[[], object]) -> int:
+    """Fork a process for some work; of what is open here it keeps one file."""
     process = os.fork()
     if not process:
         try:
-            os.closerange(3, its.fileno())
-            os.closerange(its.fileno() + 1, MOST_FILES)
-            supervisor.serve(its)
+            close_all_but(file)
+            work()
         finally:
             os._exit(0)  # whatever happens, no copy of this process goes on
-    return partial(os.waitpid, process, 0)
+    return process
+
+
+def close_all_but(file: int) -> None:
+    """Close what is open, but one file and the three that every process has."""
+    os.closerange(FIRST_FILE, file)
+    os.closerange(file + 1, MOST_FILES)
 
 
 def started(its: Connection) -> Callable[[], object]:
@@ -127,6 +139,10 @@ class Pool:
         with self._lock:
             self._free.append(lent)
 
+    def forget(self) -> None:
+        """Leave those that there are to the process that this one was forked from."""
+        self._free = []
+
     def end(self) -> None:
         """Let all go."""
         while self._free:
@@ -160,6 +176,7 @@ class Isolation:
             return Done(known, 0.0, 0)
         answer = self._asked(function, element, limits)
         if isinstance(answer, Done):
+            self.aside.forget(stage, element)
             return answer
         if isinstance(answer, Failed):
             raise Unstored(answer.text) if answer.fatal else Crashed(answer.text)

@@ -57,15 +57,18 @@ def ran(
             try:
                 with stopping.at_once():
                     result.wait_until_finish()
-            except stopping.Stopped:
-                result.cancel()
+            except stopping.Stopped as why:
+                if not cluster.cancelled(result):
+                    words = f"{why}; {cluster.UNSURE}"
+                    raise stopping.Stopped(words, why.code) from why
                 raise
         return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
     wire(pipeline)
     try:
-        with embedded.on_loopback(), embedded.ending_with_a_worker():
+        ours = embedded.on_loopback(), embedded.from_the_mould()
+        with ours[0], ours[1], embedded.ending_with_a_worker():
             result = pipeline.run()
             result.wait_until_finish()
     except embedded.WorkerLost as problem:

@@ -1,4 +1,4 @@
-"""Loads Beam without what it would load for others: clients of stores.
+"""Loads Beam without what it would load for others: clients of stores and of Google.
 
 Each of a run's processes would load them, and none has a use for them; Beam itself goes
 on where they are not installed. Afterwards they can be had again. (City folders in
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
-UNUSED: Final = ("boto3", "bson", "pymongo")
+UNUSED: Final = ("boto3", "bson", "pymongo", "apache_beam.io.gcp.bigquery")
 
 
 @contextmanager

@@ -5,7 +5,9 @@ import sys
 from pipelines import stopping
 from pipelines.build.isolation import POOL
 
-if __name__ == "__main__":
+
+def work() -> None:
+    """Work for the runner that the environment names, until it wants no more."""
     stopping.left_to_the_driver()
     import pipelines.build.blocks  # noqa: F401 - what both will need, loaded once
 
@@ -13,3 +15,7 @@ if __name__ == "__main__":
     from apache_beam.runners.worker import sdk_worker_main
 
     sdk_worker_main.main(sys.argv)
+
+
+if __name__ == "__main__":
+    work()

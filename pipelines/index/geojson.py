@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-import pyproj
 import shapely
-from pyproj.exceptions import CRSError
 from shapely.geometry.base import BaseGeometry
 
 DEGREES: Final = "EPSG:4326"
@@ -145,6 +143,9 @@ def _in_degrees(found: list[Feature], crs: str) -> list[Feature]:
         first = found[0]
         raise NoOutlines(f"holds no polygon: feature {first.number} {first.fault}")
     if crs:
+        import pyproj  # which is slow to load
+        from pyproj.exceptions import CRSError
+
         try:
             own = pyproj.CRS.from_user_input(crs).to_2d()
             carry = pyproj.Transformer.from_crs(own, DEGREES, always_xy=True)

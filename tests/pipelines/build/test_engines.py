@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -10,9 +11,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import grpc
 import pytest
+from apache_beam.portability.api import beam_job_api_pb2, beam_job_api_pb2_grpc
 
-from tests.pipelines.cities import built, copied, tree
+from pipelines.store import Store, busy
+from tests.pipelines.cities import artifacts, built, copied, tree
 
 BESIDE = Path(sys.executable).with_name("prism")
 PRISM = os.environ.get("NOSTALGIN_PRISM") or shutil.which("prism")
@@ -76,6 +80,47 @@ def test_prism_with_external_workers_makes_the_same_bytes(
     with running(command, job, tmp_path / "prism.log"):
         report = built(other, at(job, workers))
     assert (report.photos, report.blocks) == (4, 2)
+    assert tree(other) == tree(city)
+
+
+def states(job: int) -> list[str]:
+    """Ask a job service how its jobs stand."""
+    with grpc.insecure_channel(f"localhost:{job}") as channel:
+        stub = beam_job_api_pb2_grpc.JobServiceStub(channel)
+        told = stub.GetJobs(beam_job_api_pb2.GetJobsRequest()).job_info
+        return [beam_job_api_pb2.JobState.Enum.Name(one.state) for one in told]
+
+
+@pytest.mark.skipif(not PRISM, reason="no prism: run `make prism`")
+def test_sigterm_cancels_the_job_and_the_next_run_goes_on(
+    city: Path, tmp_path: Path, workers: int
+) -> None:
+    assert PRISM is not None
+    other, job = copied(city, tmp_path), free_port()
+    command = [PRISM, f"--job_port={job}", "--serve_http=false"]
+    models = ["--models", str(other.parent / "models")]
+    words = ["-m", "pipelines.cli", "build", str(other), *models, *at(job, workers)]
+    with running(command, job, tmp_path / "prism.log"):
+        with subprocess.Popen(
+            [sys.executable, *words], stderr=subprocess.PIPE, text=True
+        ) as driver:
+            while driver.poll() is None and not artifacts(other, "segment"):
+                time.sleep(0.02)
+            driver.send_signal(signal.SIGTERM)
+            said = driver.communicate(timeout=WAIT_S)[1]
+        assert driver.returncode == 128 + signal.SIGTERM
+        assert "Traceback" not in said
+        assert "does not say" not in said
+        assert states(job) == ["CANCELLED"]
+        assert not busy(Store(str(other)))
+        assert not (other / "CURRENT").exists()
+        before = {path: path.stat().st_mtime_ns for path in artifacts(other, "")}
+        time.sleep(1)
+        assert {
+            path: path.stat().st_mtime_ns for path in artifacts(other, "")
+        } == before
+        built(other, at(job, workers))
+    assert {path: path.stat().st_mtime_ns for path in before} == before
     assert tree(other) == tree(city)
 
 

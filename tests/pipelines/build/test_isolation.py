@@ -140,6 +140,7 @@ def test_what_was_put_aside_is_not_tried_again_unless_asked(
     assert done(isolation(store), str(calls), act) == first
     assert calls.read_text() == "xx"
     assert done(isolation(store, retry=True), str(calls), act) == 3
+    assert done(isolation(store), str(calls), act) == 4  # which is no longer known
 
 
 def test_a_death_that_was_another_s_fault_costs_nothing(
