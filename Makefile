@@ -5,6 +5,7 @@
 # make audit  known holes in what this is built on; it asks a service elsewhere
 # make prism  Beam's portable runner, built by Go from its module proxy; two minutes
 # make airflow  Airflow in an environment of its own, for the test of its DAG
+# make deploy  what deploy/ tells clusters, asked of schemas and linters; a minute, and Go
 # make bench  benchmarks, as ratios against named baselines
 
 PYTHON ?= python3
@@ -22,7 +23,7 @@ GO ?= go
 BEAM := 2.77.0
 AIRFLOW := 3.1.3
 
-.PHONY: demo test check fuzz audit prism airflow bench viewer clean
+.PHONY: demo test check fuzz audit prism airflow deploy bench viewer clean
 
 demo: $(VENV)/.run $(VIEWER)
 	$(BIN)/nostalgin demo -o $(CITY)
@@ -54,6 +55,10 @@ airflow: .tools/airflow/bin/airflow
 .tools/airflow/bin/airflow: | $(UV)
 	$(UV) venv --quiet .tools/airflow
 	VIRTUAL_ENV=$(CURDIR)/.tools/airflow $(UV) pip install --quiet apache-airflow==$(AIRFLOW)
+
+deploy:
+	@if command -v $(GO) >/dev/null; then sh deploy/check.sh; \
+	else echo "no Go: deploy/ is not checked"; fi
 
 bench: $(VENV)/.test
 	for f in tests/bench/bench_*.py; do $(BIN)/python $$f || exit 1; done
