@@ -12,7 +12,16 @@ from jaxtyping import Float
 from nostalgin_core import evidence, homography
 from nostalgin_core.arrays import Corners, Matrix3, Points
 from nostalgin_core.records import Elevation, Facade, Matted, Photo, Rejection
-from nostalgin_core.rectify import camera, foot, lines, orient, quad, upright, warp
+from nostalgin_core.rectify import (
+    above,
+    camera,
+    foot,
+    lines,
+    orient,
+    quad,
+    upright,
+    warp,
+)
 
 STAGE = "rectify"
 LEAST_SIDE_PX = 16  # of a front: below, there is nothing to see on it
@@ -33,6 +42,8 @@ def rectify(
 ) -> tuple[Elevation | Rejection, ...]:
     """Make one elevation, or one rejection, of each facade, in their order.
 
+    A photo that was taken from above gives rejections alone.
+
     Another `detector` of lines may be given, to be compared with ours.
     """
     if not matted.facades:
@@ -47,10 +58,11 @@ def rectify(
     feet = foot.feet(
         matted.facades, stands, foot.touches(matted.occluders, photo.frame)
     )
-    return tuple(
+    views = [
         _straighten(photo, facade, oriented, rank, feet[rank])
         for rank, facade in enumerate(matted.facades)
-    )
+    ]
+    return above.refused(photo, matted, views, oriented.world)
 
 
 def _straighten(

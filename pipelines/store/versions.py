@@ -41,7 +41,7 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 10,
     "matte": 7,
-    "rectify": 9,
+    "rectify": 10,
     "compare": 1,
     "inpaint": 6,
     "block": 8,
