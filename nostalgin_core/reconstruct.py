@@ -45,15 +45,17 @@ def rebuild(
     *,
     credit: str = "",
     drawn: Mapping[str, Drawn] = UNDRAWN,
+    mark: rectify.Watermark | None = None,
 ) -> Rebuilt:
     """Rebuild one block from photos, each with the ids of the fronts it may show.
 
     Every facade is inpainted here, those that no wall wears too; a pipeline may leave
-    these out. `drawn` is what somebody drew on photos, by their names.
+    these out. `drawn` is what somebody drew on photos, by their names, `mark` what is
+    taken out of what walls wear.
     """
     made = {
         file: steps.photograph(
-            data, networks, name=file, drawn=drawn.get(file, steps.UNDRAWN)
+            data, networks, name=file, drawn=drawn.get(file, steps.UNDRAWN), mark=mark
         )
         for file, (data, _) in sorted(photos.items())
     }
@@ -78,7 +80,11 @@ def rebuild(
             view = borrow.borrow(rectified[one.texture], lenders).elevation
             view = inpaint.inpaint(view, networks.inpaint)
             finished[one.texture] = quantise.elevation(view)
-    rights = model.Rights(credit)
+    worn = {key for one in settled.shown() for key, _ in (one.texture, *one.lenders)}
+    marks = {
+        one.watermark for one in made.values() if one.photo and one.photo.key in worn
+    }
+    rights = model.Rights(credit, watermarks=tuple(sorted(marks - {""})))
     glb = model.model(settled, finished, rights=rights).glb
     photo_rejections = [each for one in made.values() for each in one.rejections]
     return Rebuilt(settled, glb, (*photo_rejections, *settled.rejections))

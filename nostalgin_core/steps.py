@@ -51,6 +51,7 @@ class Stages:
     placard: Placard | None = None
     matted: Matted | None = None
     rectified: tuple[Elevation, ...] = ()
+    watermark: str = ""  # words of one that was taken out of them
     elevations: tuple[Elevation, ...] = ()
     rejections: tuple[Rejection, ...] = field(default=())
 
@@ -62,12 +63,13 @@ def steps(
     name: str,
     every: bool = True,
     drawn: Drawn = UNDRAWN,
+    mark: rectify.Watermark | None = None,
 ) -> Iterator[tuple[str, Any]]:
     """Yield each stage's word and its result, and end with a photo's rejection.
 
     Unless `every` facade is wanted, only the targets are inpainted, which is the
     costliest stage; all of them where no target has an elevation. What is `drawn` takes
-    the place of what was found.
+    the place of what was found. A `mark` is taken out of the elevations, not the photo.
 
     A caller that wants to know what a stage costs looks at its own clock between two
     results. A placard that can't be read stops nothing.
@@ -92,8 +94,11 @@ def steps(
         return
     matted = quantise.matted(matted)
     yield "matte", matted
-    rectified = straightened(picture, matted, drawn)
+    clear, words = rectify.unmarked(picture, mark)
+    rectified = straightened(clear, matted, drawn)
     yield "rectify", rectified
+    if words:
+        yield "watermark", words
     views = [one for one in rectified if isinstance(one, Elevation)]
     targets = {one.index for one in matted.facades if one.target}
     chosen = [one for one in views if not every and one.facade in targets] or views
@@ -143,10 +148,15 @@ FIELD = {"segment": "instances", "matte": "matted", "inpaint": "elevations"}
 
 
 def photograph(
-    data: bytes, networks: Networks, *, name: str, drawn: Drawn = UNDRAWN
+    data: bytes,
+    networks: Networks,
+    *,
+    name: str,
+    drawn: Drawn = UNDRAWN,
+    mark: rectify.Watermark | None = None,
 ) -> Stages:
     """Take one photo through every stage, from its bytes to its elevations."""
-    return gather(steps(data, networks, name=name, drawn=drawn))
+    return gather(steps(data, networks, name=name, drawn=drawn, mark=mark))
 
 
 def seen(key: str, facade: Facade, view: Elevation) -> Seen:

@@ -4,7 +4,7 @@ In: the bytes of a GLB, and the block's record. Out: CityJSON, OBJ, GeoJSON and 
 Open `shown` first.
 """
 
-from nostalgin_core.formats.cityjson import feature, header
+from nostalgin_core.formats.cityjson import feature, header, land
 from nostalgin_core.formats.geojson import footprint
 from nostalgin_core.formats.iiif import Canvas, presentation
 from nostalgin_core.formats.located import Ground, of_globe, of_plane
@@ -21,6 +21,7 @@ __all__ = [
     "feature",
     "footprint",
     "header",
+    "land",
     "of_globe",
     "of_plane",
     "png",

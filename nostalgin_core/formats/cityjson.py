@@ -3,7 +3,7 @@
 Every building has two geometries: LoD 1.2, a closed solid on its footprint up to its
 height, for those who measure; and LoD 2.0, the surfaces as they are shown, with the
 photograph and the evidence as two themes of textures. That one is no solid: a front
-rises above the roof behind it.
+rises above the roof behind it. The yards of a block are a line of their own, a LandUse.
 
 CityJSON's texture coordinates begin at the lower left. Lengths are whole millimetres.
 """
@@ -57,20 +57,39 @@ def feature(
     geometries = [_shown(shell, vertices)]
     if shell.footprint_m is not None:
         geometries.insert(0, _solid(shell, vertices))
-    coordinates = [
-        [round(float(u), 7), round(1.0 - float(v), 7)]
-        for one in shell.surfaces
-        for u, v in one.uvs
-    ]
     building = {
         "type": "Building",
         "attributes": dict(attributes),
         "geometry": geometries,
     }
+    return _line(shell, building, vertices, images)
+
+
+def land(shell: Shell, ground: Ground, *, images: Sequence[str]) -> Json:
+    """Write the line of a block's yards, which nobody photographed."""
+    vertices = _Vertices(ground)
+    surface = _shown(shell, vertices)
+    del surface["semantics"]  # CityJSON knows none of land
+    use = {
+        "type": "LandUse",
+        "attributes": {"function": "yard", "evidence_assumed": 1.0},
+        "geometry": [surface],
+    }
+    return _line(shell, use, vertices, images)
+
+
+def _line(
+    shell: Shell, told: Json, vertices: "_Vertices", images: Sequence[str]
+) -> Json:
+    coordinates = [
+        [round(float(u), 7), round(1.0 - float(v), 7)]
+        for one in shell.surfaces
+        for u, v in one.uvs
+    ]
     return {
         "type": "CityJSONFeature",
         "id": shell.name,
-        "CityObjects": {shell.name: building},
+        "CityObjects": {shell.name: told},
         "vertices": vertices.written,
         "appearance": {
             "textures": [

@@ -46,7 +46,8 @@ def archive(shown: Shown, name: str, *, told: Mapping[str, Any]) -> bytes:
 def _obj(shown: Shown, name: str) -> str:
     lines = [HEAD.format(name), f"mtllib {name}.mtl\n"]
     vertex = 1
-    for number, shell in enumerate(shown.shells):
+    shells = [*shown.shells, *([shown.ground] if shown.ground else [])]
+    for number, shell in enumerate(shells):
         lines.append(f"o {_word(shell.name) or number}\nusemtl photograph\n")
         for one in shell.surfaces:
             east, north, up = one.corners_m.T

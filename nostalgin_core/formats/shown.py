@@ -83,6 +83,7 @@ class Shown:
     copyright: str
     extras: Json
     shells: tuple[Shell, ...]
+    ground: Shell | None  # the yards, of no building; None: there are none
     colours: UInt8[np.ndarray, "h w 4"]
     evidence: EvidenceMap
 
@@ -141,12 +142,12 @@ def _read(data: bytes) -> Shown:
     (size,) = struct.unpack_from("<I", data, 12)
     document, binary = json.loads(data[20 : 20 + size]), data[28 + size :]
     asset = document["asset"]
-    shells = [
-        Shell(one["name"], tuple(_surfaces(document, binary, one["primitives"][0])))
-        for one in document["meshes"]
-        if "_FEATURE_ID_0"
-        in one["primitives"][0]["attributes"]  # no building's: ground
-    ]
+    shells, grounds = [], []
+    for one in document["meshes"]:
+        (part,) = one["primitives"]
+        shell = Shell(one["name"], tuple(_surfaces(document, binary, part)))
+        numbered = "_FEATURE_ID_0" in part["attributes"]
+        (shells if numbered else grounds).append(shell)
     colours, codes = (
         Image.open(io.BytesIO(_view(document, binary, one["bufferView"])))
         for one in document["images"]
@@ -156,6 +157,7 @@ def _read(data: bytes) -> Shown:
         copyright=str(asset.get("copyright", "")),
         extras=asset["extras"],
         shells=tuple(shells),
+        ground=grounds[0] if grounds else None,
         colours=np.asarray(colours.convert("RGBA")),
         evidence=np.asarray(codes),
     )

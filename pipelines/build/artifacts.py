@@ -28,7 +28,8 @@ def joined(*records: type) -> pa.Schema:
 
 
 MATTED: Final = joined(Facade, Occluder)
-RECTIFIED: Final = joined(Elevation, Seen, Standpoint, Rejection)
+WATERMARK: Final = pa.field("watermark", pa.string())  # words of one taken out
+RECTIFIED: Final = joined(Elevation, Seen, Standpoint, Rejection).append(WATERMARK)
 THUMBNAIL: Final = pa.schema([pa.field("picture", pa.binary())])
 LENT: Final = ["photos", "fits", "unseen", "left", "front"]
 BORROWED: Final = pa.schema(
@@ -42,7 +43,10 @@ BORROWED: Final = pa.schema(
         pa.field("front", pa.int64()),  # texels of the front
     ]
 )
-NUMBERS: Final = [field.name for field in joined(Seen, Standpoint, Rejection)]
+NUMBERS: Final = [
+    *(field.name for field in joined(Seen, Standpoint, Rejection)),
+    WATERMARK.name,
+]
 
 
 def matted_table(result: Matted) -> pa.Table:
@@ -61,9 +65,15 @@ def matted_from(table: pa.Table) -> Matted:
 
 
 def rectified_table(
-    picture: Photo, result: Matted, views: tuple[Elevation | Rejection, ...]
+    picture: Photo,
+    result: Matted,
+    views: tuple[Elevation | Rejection, ...],
+    watermark: str = "",
 ) -> pa.Table:
-    """Write a row for each facade: its elevation and numbers, or its rejection."""
+    """Write a row for each facade: its elevation and numbers, or its rejection.
+
+    A `watermark` that was taken out of the elevations is named by its words.
+    """
     frame, shape = picture.frame, picture.image.shape
     rows: list[dict[str, Any]] = []
     for facade, view in zip(result.facades, views, strict=True):
@@ -71,15 +81,19 @@ def rectified_table(
         if isinstance(view, Elevation):
             stood = rectify.standpoint(view, frame=frame, shape=(shape[0], shape[1]))
             row |= tables.to_row(steps.seen(picture.key, facade, view))
-            row |= tables.to_row(stood)
+            row |= tables.to_row(stood) | {"watermark": watermark}
         rows.append(row)
     return pa.Table.from_pylist(rows, RECTIFIED)
 
 
-def seen_from(table: pa.Table) -> list[tuple[Seen, Standpoint] | Rejection]:
-    """Read the numbers of each facade and where its camera stood, or its rejection."""
+def seen_from(table: pa.Table) -> list[tuple[Seen, Standpoint, str] | Rejection]:
+    """Read each facade's numbers, its camera and watermark, or its rejection."""
     return [
-        (tables.from_row(Seen, row), tables.from_row(Standpoint, row))
+        (
+            tables.from_row(Seen, row),
+            tables.from_row(Standpoint, row),
+            row[WATERMARK.name] or "",
+        )
         if row["reason"] is None
         else tables.from_row(Rejection, row)
         for row in table.to_pylist()

@@ -9,6 +9,8 @@ import pyarrow as pa
 from nostalgin_core import photo
 from nostalgin_core.model import ImageFormat
 from nostalgin_core.records import Photo, Rejection
+from nostalgin_core.rectify import Watermark
+from pipelines import index
 from pipelines.build.attempt import Attempt
 from pipelines.build.isolation import Isolation
 from pipelines.build.supervisor import Limits
@@ -30,6 +32,7 @@ class Bench:
     limits: Limits = field(default_factory=Limits)
     retry: bool = False  # what ended its process in an earlier run
     image_format: ImageFormat = "webp"  # of the models' textures
+    mark: str = ""  # of the archive's copies, by name; empty: none is taken out
     damaged: list[str] = field(default_factory=list, compare=False)  # met and dropped
     found: list[str] = field(default_factory=list, compare=False)  # and not made
     made: list[str] = field(default_factory=list, compare=False)
@@ -77,6 +80,11 @@ class Bench:
     def network(self, name: str) -> Once:
         """Name a network, to be loaded by the process that first calls it."""
         return Once(self.models, name)
+
+    @property
+    def watermark(self) -> Watermark | None:
+        """Give the mark that the archive's copies bear, if it is to be taken out."""
+        return index.watermark(self.mark)
 
     def decoded(self, ref: PhotoRef) -> Photo | Rejection:
         """Read and decode a photo again: cheaper than carrying its pixels."""

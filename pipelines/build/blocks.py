@@ -236,7 +236,8 @@ def rights(one: Placed) -> model.Rights:
     photos = {ref.seen.photo: ref.photo for ref in refs}
     names = {key: (ref.root, ref.name) for key, ref in sorted(photos.items())}
     worn = {key: dict(told[name]) for key, name in names.items() if name in told}
-    return model.Rights(task.credit, task.licence, task.sources, worn)
+    marks = tuple(sorted({ref.watermark for ref in refs} - {""}))
+    return model.Rights(task.credit, task.licence, task.sources, worn, marks)
 
 
 def walls(building: Building) -> list[dict[str, Any]]:

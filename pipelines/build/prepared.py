@@ -121,7 +121,21 @@ def bench_of(ours: CityOptions, store: Store) -> Bench:
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)
     near = replace(store, era=f"{os.getpid()}.{time.time_ns()}")
     form = "png" if ours.no_webp else "webp"
-    return Bench(near, Versions.present(models), models, limits, ours.retry, form)
+    mark = mark_of(store)
+    versions = Versions.present(models, mark=index.watermark_sha256(mark))
+    return Bench(near, versions, models, limits, ours.retry, form, mark)
+
+
+def mark_of(store: Store) -> str:
+    """Name the watermark that a city's profile tells of, if it does.
+
+    Raises:
+        Unusable: if the profile makes no sense.
+    """
+    try:
+        return index.of_city(store).watermark
+    except index.Nothing as problem:
+        raise Unusable(str(problem)) from problem
 
 
 def written_anew(store: Store) -> Source:

@@ -45,7 +45,8 @@ class FacadeRows:
         key = self.versions.rectify_key(ref.photo.sha256, *ref.photo.drawn)
         where = self.versions.path("rectify", key)
         known = tables.to_row(ref.seen) | tables.to_row(ref.standpoint)
-        return [{"name": ref.photo.name, "elevations": where} | known]
+        named = {"name": ref.photo.name, "elevations": where}
+        return [named | known | {"watermark": ref.watermark}]
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,11 @@ def block_rows(done: Modelled) -> Rows:
 def record(one: Placed) -> str:
     """Write what the viewer tells of a block."""
     told = {
-        ref.seen.photo: {"credit": one.task.credit, "caption": ref.photo.name}
+        ref.seen.photo: {
+            "credit": site.credited(one.task.credit, ref.watermark),
+            "caption": ref.photo.name,
+            **({"watermark": ref.watermark} if ref.watermark else {}),
+        }
         for ref in one.facades
     }
     known = site.record(

@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow as pa
 from apache_beam import pvalue
 
-from nostalgin_core import quantise, segment, steps
+from nostalgin_core import quantise, rectify, segment, steps
 from nostalgin_core.records import (
     Drawn,
     Instance,
@@ -40,6 +40,7 @@ class FacadeRef:
     photo: PhotoRef
     seen: Seen
     standpoint: Standpoint  # of the photo's camera
+    watermark: str = ""  # words of one that was taken out of its tones
 
     @property
     def key(self) -> str:
@@ -175,11 +176,12 @@ def rectified(ref: PhotoRef, bench: Bench) -> list[FacadeRef | Rejection]:
     before = versions.path("matte", versions.matte_key(ref.sha256, ref.outline))
 
     def make() -> pa.Table | Rejection:
-        picture = needed(bench.decoded(ref))
+        photo = needed(bench.decoded(ref))
+        picture, words = rectify.unmarked(photo, bench.watermark)
         again = partial(matted, ref, bench)
         result = artifacts.matted_from(bench.read(before, again))
         views = steps.straightened(picture, result, drawn(ref))
-        return artifacts.rectified_table(picture, result, views)
+        return artifacts.rectified_table(picture, result, views, words)
 
     rejection = bench.keep(path, make)
     if rejection is not None:

@@ -204,6 +204,28 @@ def city_command(
     tell(report, layout.text(report), as_json=as_json, quiet=quiet)
 
 
+@app.command("watermark")
+def watermark_command(
+    folder: Annotated[Path, typer.Argument(help="Copies that bear the watermark.")],
+    *,
+    without: Annotated[
+        Path | None, typer.Option(help="Photographs that do not bear it.")
+    ] = None,
+    name: Annotated[str, typer.Option(help="Which known one.")] = "nyc-records",
+    write: Annotated[
+        Path | None, typer.Option(help="Write it here, measured on all the copies.")
+    ] = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
+) -> None:
+    """Measure a known watermark on half of its copies, and what is left on the rest."""
+    with measuring():
+        from pipelines.evaluate import watermark
+
+        report = watermark.evaluate(folder, name=name, without=without, write=write)
+    tell(report, watermark.text(report), as_json=as_json, quiet=quiet)
+
+
 @app.command("views")
 def views_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],

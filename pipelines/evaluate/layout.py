@@ -1,9 +1,10 @@
-"""How right a finished city stands: each lot's street, side, order, width and height.
+"""How right a finished city stands: a lot's street, side, order, width and height.
 
 *street*: one of a lot's fronts stands on a street that its front was seen to look on.
 *side*, *order*: for each two lots that a photograph shows as neighbours on one street,
 both border one side of the block, the left one left of the right one. *width*: along
-the street, within a tenth of the list's. *height*: see `heights`. A ring's closure is
+the street, within a tenth of the list's. *height*, *interval*: near the storeys that
+were counted, and stated to lie where these are (`heights`). A ring's closure is
 by how many metres its sides as measured miss their start (before), and along how many
 metres of its outline no building stands (after).
 """
@@ -33,7 +34,7 @@ from pipelines.index.row import Row
 from pipelines.store import Store, runs
 
 NEAR_WIDTH: Final = 0.1  # of the list's
-MARKS: Final = ("street", "side", "order", "width", "height")
+MARKS: Final = ("street", "side", "order", "width", "height", "interval")
 
 Law = Callable[[Stretch, Stretch], bool]
 
@@ -128,9 +129,13 @@ def neighbours_of(
 
 
 def height_of(one: Told, tall: Told) -> Told:
-    """Tell whether a building is as high as its storeys, counted on windows."""
+    """Tell whether a building, and its interval, are as high as counted storeys."""
+    counted = tall.get("kind") == heights.COUNTED
     return {
-        "height": tall["near"] if tall.get("kind") == heights.COUNTED else None,
+        "height": tall["near"] if counted else None,
+        "interval": tall["held"] if counted else None,
+        "height_low_m": tall.get("height_low_m"),
+        "height_high_m": tall.get("height_high_m"),
         "height_m": round(one["height_m"], 2),
         "counted_m": tall.get("true_m"),
     }
@@ -176,7 +181,7 @@ def text(report: dict[str, Any]) -> str:
     for mark in MARKS:
         known = [row[mark] for row in report["lots"] if row[mark] is not None]
         lines.append(f"{mark:<10}{sum(known):>7}{len(known):>7}")
-    lines += ["", f"{'lot':<12}" + "".join(f"{mark:>8}" for mark in MARKS)]
+    lines += ["", f"{'lot':<12}" + "".join(f"{mark:>9}" for mark in MARKS)]
     lines += [line_of(row) for row in report["lots"]]
     lines.append("")
     for one in report["rings"]:
@@ -202,5 +207,9 @@ def line_of(row: Told) -> str:
         told.append(f"{row['width_m']:.1f} m wide, listed {row['listed_m']:.1f}")
     if row["height"] is False:
         told.append(f"{row['height_m']:.1f} m high, counted {row['counted_m']:.1f}")
-    marks = "".join(f"{words[row[mark]]:>8}" for mark in MARKS)
+    if row["interval"] is False:
+        low, high = row["height_low_m"], row["height_high_m"]
+        stated = "no interval" if low is None else f"{low:.1f} to {high:.1f} m stated"
+        told.append(f"{stated}, counted {row['counted_m']:.1f}")
+    marks = "".join(f"{words[row[mark]]:>9}" for mark in MARKS)
     return f"{row['building']:<12}{marks}  {'; '.join(told)}".rstrip()

@@ -136,6 +136,8 @@ class CityJson:
             )
             for shell in shown.shells
         ]
+        if shown.ground is not None:
+            lines.append(formats.land(shown.ground, ground, images=images))
         self._folder.write(images[0], formats.png(shown.colours))
         self._folder.write(images[1], formats.png(formats.tinted(shown.evidence)))
         self._folder.write(file, b"".join(text(line) + b"\n" for line in lines))

@@ -19,6 +19,8 @@ from pipelines.index.index import Indexed, index
 from pipelines.index.profiles import PROFILE, of_city
 from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned, of_folder
+from pipelines.index.watermarks import sha256 as watermark_sha256
+from pipelines.index.watermarks import watermark
 from pipelines.index.witnesses import Ask, Heard
 
 __all__ = [
@@ -43,4 +45,6 @@ __all__ = [
     "renewed",
     "seldom",
     "told_of_places",
+    "watermark",
+    "watermark_sha256",
 ]

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from nostalgin_core import expression
 from nostalgin_core.catalogue import Naming
+from pipelines.index import watermarks
 from pipelines.index.images import Nothing
 from pipelines.index.profiles import ARCHIVES, Profile
 
@@ -70,11 +71,30 @@ class Board(Strict):
     pattern: Pattern | None = None
 
 
+def named(given: str) -> str:
+    """Insist on a watermark that is known.
+
+    Raises:
+        ValueError: if it is not; the words name those that are.
+    """
+    if given not in watermarks.known():
+        known = ", ".join(watermarks.known())
+        raise ValueError(f"not a watermark that is known: write one of {known}")
+    return given
+
+
+class Mark(Strict):
+    """What copies bear that no camera saw."""
+
+    known: Annotated[str, AfterValidator(named)] | None = None
+
+
 class Told(Strict):
     """A whole profile."""
 
     names: Names = Names()
     board: Board = Board()
+    watermark: Mark = Mark()
 
 
 def of_cells(cells: Mapping[str, Any], path: Path) -> Profile:
@@ -92,7 +112,8 @@ def of_cells(cells: Mapping[str, Any], path: Path) -> Profile:
         raise Nothing(f"{path}: board.pattern: of no board; write present = true, too")
     patterns = tuple(told.names.patterns), tuple(told.names.without_list)
     naming = Naming(*patterns, shipped=path.parent == ARCHIVES)
-    return Profile(path.stem, naming, board.present, board.pattern or "")
+    mark = told.watermark.known or ""
+    return Profile(path.stem, naming, board.present, board.pattern or "", mark)
 
 
 def numbered(place: int) -> str:

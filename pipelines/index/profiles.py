@@ -28,6 +28,7 @@ class Profile:
     naming: Naming
     boarded: bool  # its photographs show boards
     board: str = ""  # a pattern of theirs; empty: of New York's
+    watermark: str = ""  # that its copies bear, by name; empty: none is taken out
     toml: bytes = b""  # as it was read
 
 

@@ -86,7 +86,8 @@ def now(
     mended, anchors = build.corrected(store, there), anchored(store, there)
     streets = build.Streets(anchors.widths_m, anchors.gaps_m)
     mended = replace(mended, streets=streets)
-    versions = Versions.present(models)
+    mark = index.watermark_sha256(build.mark_of(store))
+    versions = Versions.present(models, mark=mark)
     options = published(store).told.get("options") or {}
     before = [one for one in str(options.get("allow_schemes", "")).split(",") if one]
     allowed = tuple(sorted({*schemes, *before}))

@@ -6,7 +6,7 @@ Open `publish` first.
 
 from pipelines.site.folder import Folder, Foreign, inside, recorded
 from pipelines.site.publish import claim, damaged, publish
-from pipelines.site.record import record
+from pipelines.site.record import credited, record
 from pipelines.site.site import ViewerMissingError, safe, thumbnail
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "Foreign",
     "ViewerMissingError",
     "claim",
+    "credited",
     "damaged",
     "inside",
     "publish",

@@ -18,6 +18,7 @@ from pipelines.index.row import Row
 from pipelines.site import site
 from pipelines.site.folder import written
 from pipelines.site.placing import Placing, placing, spot
+from pipelines.site.record import credited
 from pipelines.store import Damaged, Store, runs
 from pipelines.store.versions import Versions
 
@@ -105,6 +106,8 @@ def models(
             building.update(built.get(building["id"], {}))
             for photo in building["photos"]:  # it says whose the block's photos are
                 photo.update(words.get(photo["key"], {}))
+                mark = photo.get("watermark", "")
+                photo["credit"] = credited(photo.get("credit", ""), mark)
             there = {photo["key"] for photo in building["photos"]}
             building["photos"] += [
                 photo

@@ -74,6 +74,12 @@ def record(
     }
 
 
+def credited(credit: str, watermark: str) -> str:
+    """Add what a watermark said that was taken out to whom is credited, if it lacks."""
+    own = [] if watermark.casefold() in credit.casefold() else [watermark]
+    return "; ".join([*([credit] if credit else []), *own])
+
+
 def _building(
     building: Building,
     fronts: Mapping[str, Front],

@@ -58,6 +58,7 @@ FACADES: Final = pa.schema(
         *columns(name=TEXT, elevations=TEXT),
         *tables.schema(Seen),
         *tables.schema(Standpoint),  # of its photo's camera, in widths of the facade
+        *columns(watermark=TEXT),  # what one said that was taken out of its tones
     ]
 )
 BUILDINGS: Final = columns(

@@ -41,7 +41,7 @@ from pipelines.store.store import ARTIFACTS, key_of
 CODE: Final = {
     "segment": 10,
     "matte": 7,
-    "rectify": 10,
+    "rectify": 11,
     "compare": 1,
     "inpaint": 6,
     "block": 8,
@@ -61,6 +61,7 @@ ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {
     "placard": (placard,),
 }
 CORE: Final = "nostalgin_core."
+MARKED: Final = "rectify"  # the stage that takes a known watermark off
 COUNTED: Final = ("segment", "matte", "rectify", "borrow", "inpaint", "block")
 
 
@@ -127,15 +128,16 @@ def defaults(one: Callable[..., Any]) -> list[list[str]]:
 PARAMETERS: Final = {stage: parameters(*rooms) for stage, rooms in ROOMS.items()}
 
 
-def version(stage: str, models: Models) -> str:
-    """Name the version of a stage as it is now.
+def version(stage: str, models: Models, mark: str = "") -> str:
+    """Name the version of a stage as it is now, with the hash of what it takes off.
 
     Raises:
         Unlocked: if the stage's network has no lock.
     """
     network = models.sha256(stage) if stage in NETWORKS else ""
     network = release(PRINT) if stage == READER else network
-    return f"{CODE[stage]}-{key_of(PARAMETERS[stage], network)[:8]}"
+    taken_off = [mark] if mark and stage == MARKED else []
+    return f"{CODE[stage]}-{key_of(PARAMETERS[stage], network, *taken_off)[:8]}"
 
 
 @dataclass(frozen=True)
@@ -154,13 +156,15 @@ class Versions:
     compare: str = ""  # of a run before there was one
 
     @classmethod
-    def present(cls, models: Models) -> Self:
+    def present(cls, models: Models, *, mark: str = "") -> Self:
         """Name the versions of all stages as they are now.
+
+        `mark` is the hash of the watermark that is taken off, if one is.
 
         Raises:
             Unlocked: if a network has no lock.
         """
-        return cls(**{stage: version(stage, models) for stage in CODE})
+        return cls(**{stage: version(stage, models, mark) for stage in CODE})
 
     def key(self, stage: str, *made_from: str) -> str:
         """Make an artifact's key from the keys of what it is made from."""

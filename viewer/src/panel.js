@@ -70,7 +70,7 @@ function photographs(record, name, onThen) {
   return record.photos.map((photo) => figure(photo, name, onThen));
 }
 
-function figure({ key, file, credit, caption, date, rights, license, source_url: source, used, lent, camera }, name, onThen) {
+function figure({ key, file, credit, caption, date, rights, license, source_url: source, used, lent, camera, watermark }, name, onThen) {
   const image = make('img', { alt: `Photograph of ${name}`, decoding: 'async' });
   const whole = make('a', { target: '_blank', rel: 'noopener', title: 'Open the photograph' }, [image]);
   const holder = make('figure', {}, [whole]);
@@ -86,7 +86,8 @@ function figure({ key, file, credit, caption, date, rights, license, source_url:
   } else absent();
   const other = used === false ? 'Not the one on the model.' : null;
   const neighbours = lent ? 'Taken of a neighbour; it shows this front too.' : null;
-  const words = [[caption, date].filter(Boolean).join(', '), neighbours, other, rights, license].filter(Boolean);
+  const cleared = watermark ? `The wall’s texture is without the archive’s watermark (${watermark}).` : null;
+  const words = [[caption, date].filter(Boolean).join(', '), neighbours, other, cleared, rights, license].filter(Boolean);
   const lines = words.map((text) => make('span', { textContent: text, dir: 'auto' })); // each its own way
   if (credit) lines.push(make('cite', { textContent: credit, dir: 'auto' }));
   if (source) lines.push(link('The archive’s record', source));

@@ -102,8 +102,4 @@ def site_record(city: Path) -> Json:
 def glb(city: Path, block: str) -> trimesh.Scene:
     (one,) = (o for o in site_record(city)["blocks"] if o["name"] == block)
     data = (city / "site" / one["uri"]).read_bytes()
-    scene = trimesh.load(io.BytesIO(data), file_type="glb")
-    scene.delete_geometry(
-        [name for name in scene.geometry if name == f"{block}-ground"]
-    )
-    return scene
+    return trimesh.load(io.BytesIO(data), file_type="glb")

@@ -152,4 +152,7 @@ def test_a_block_of_one_lot_and_of_a_thousand_is_written(
     )
     made = shown_city.published(tmp_path, shown_city.bare("7", fronts))
     export(made, tmp_path / "out", ("cityjson", "obj"))
-    assert len(lines(tmp_path / "out", "7")) == count + 1
+    rows = [one["CityObjects"].values() for one in lines(tmp_path / "out", "7")]
+    kinds = [one["type"] for row in rows for one in row]
+    assert kinds.count("Building") == count
+    assert set(kinds) <= {"Building", "LandUse"}
