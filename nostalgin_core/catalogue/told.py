@@ -2,11 +2,12 @@
 
 These are another street of the block where the number has its gap, and another number
 on the lot's own street: the one that lies between its neighbours' and is most easily
-mistaken for what is written.
+mistaken for what is written. No number is told to two lots: it goes to the one whose
+own is most easily mistaken for it.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from nostalgin_core.catalogue.along import Along
@@ -33,8 +34,10 @@ def told(
     for one in (one for side in sides for one in side.spots):
         streets[one.lot].append(one.street)
     found = []
-    for spot, why in sorted(reasons.values(), key=lambda one: (one[0].key, one[0].lot)):
-        likely = _likely(spot, where.get(spot.lot), known)
+    doubtful = sorted(reasons.values(), key=lambda one: (one[0].key, one[0].lot))
+    numbers = _numbers([spot for spot, _ in doubtful], where, known)
+    for (spot, why), number in zip(doubtful, numbers, strict=True):
+        likely = _likely(spot, number, known)
         some = "; ".join(dict.fromkeys([*why, *_taken(spot, streets[spot.lot])]))
         remedy = f"; likeliest {' or '.join(likely)}" if likely else ""
         words = f"row {spot.row}: {some}; mend row {spot.row} if it is wrong{remedy}"
@@ -60,7 +63,28 @@ def _taken(spot: Spot, streets: Sequence[str]) -> list[str]:
     return [f"it is taken as on {' and '.join(dict.fromkeys(streets))}"]
 
 
-def _likely(spot: Spot, where: tuple[Along, int] | None, known: Faces) -> list[str]:
+def _numbers(
+    doubtful: Sequence[Spot], where: Mapping[str, tuple[Along, int]], known: Faces
+) -> list[str]:
+    """Give each lot a number and its own street, where one is vacant; "": none is."""
+    wishes: list[tuple[int, int, int]] = []  # how far from what is written, whose
+    streets: dict[int, str] = {}
+    for index, spot in enumerate(doubtful):
+        if spot.lot in where:
+            side, place = where[spot.lot]
+            streets[index] = side.spots[place].street
+            written = "".join(c for c in spot.address.split("-")[0] if c.isdecimal())
+            vacant = _between(side, place, known) if streets[index] else []
+            wishes += [(_mistaken(written, str(n)), n, index) for n in vacant]
+    told, given = [""] * len(doubtful), set[tuple[str, int]]()
+    for _, number, index in sorted(wishes):
+        if not told[index] and (folded(streets[index]), number) not in given:
+            told[index] = f"{number} {streets[index]}"
+            given.add((folded(streets[index]), number))
+    return told
+
+
+def _likely(spot: Spot, number: str, known: Faces) -> list[str]:
     """List the likeliest corrections of a lot's address."""
     likely = []
     numbers = numbers_of(spot.address)
@@ -73,17 +97,11 @@ def _likely(spot: Spot, where: tuple[Along, int] | None, known: Faces) -> list[s
             and known.near(street, numbers, -1) == WITNESSES
         ]
         likely += [f"{spot.address} {street}" for street in streets[:MOST]]
-    if where is not None:
-        side, place = where
-        street = side.spots[place].street
-        number = _between(spot, side, place, known)
-        if number and street:
-            likely.append(f"{number} {street}")
-    return list(dict.fromkeys(likely))
+    return list(dict.fromkeys([*likely, *filter(None, [number])]))
 
 
-def _between(spot: Spot, side: Along, place: int, known: Faces) -> str:
-    """Find the number between a lot's neighbours that is nearest to what is written."""
+def _between(side: Along, place: int, known: Faces) -> list[int]:
+    """List the numbers between a lot's neighbours that no lot has."""
     run = side.run(1)
     out = {side.steady[i] for i in run.out}
     sure = [i for i in side.steady if i not in out and i != place]
@@ -91,22 +109,18 @@ def _between(spot: Spot, side: Along, place: int, known: Faces) -> str:
     after = [side.spots[i] for i in sure if i > place][:1]
     ends = sorted(one.number or 0.0 for one in (*before, *after))
     if not ends:
-        return ""
+        return []
     low, high = int(ends[0]), int(ends[-1])
     if len(ends) == 1:
         rising = run.direction * (1 if before else -1)
         low, high = (low, low + REACH) if rising >= 0 else (max(low - REACH, 0), low)
     street = side.spots[place].street
-    vacant = [
+    return [
         number
         for number in range(low + 1, high)
         if number % 2 == (side.parity if side.parity is not None else number % 2)
         and not known.taken(street, (float(number), float(number)), -1)
     ]
-    if not vacant:
-        return ""
-    written = "".join(c for c in spot.address.split("-")[0] if c.isdecimal())
-    return str(min(vacant, key=lambda one: (_mistaken(written, str(one)), one)))
 
 
 def _mistaken(a: str, b: str) -> int:

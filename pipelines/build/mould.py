@@ -183,6 +183,7 @@ def made_of(owner: Connection, *, errors: int) -> Made:
             from pipelines.build import worker
 
             worker.work()
+            isolation.POOL.end()  # whose CPU time counts as ours, then
             code = 0
         finally:
             os._exit(code)

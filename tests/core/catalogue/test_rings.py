@@ -333,3 +333,15 @@ def test_a_doubt_about_a_photo_tells_the_lot_of_its_name() -> None:
     (one,) = [each for each in rings.fronts(rows)[1] if each.photo]
     assert (one.block, one.lot, one.photo) == ("9", "1", cells["photo"])
     assert one.named == ("9", "2")
+
+
+def test_no_number_is_the_likeliest_of_two_lots() -> None:
+    south = {"104": "147", "5": "143-145", "22": "115-119", "25": "105", "29": "111"}
+    rows = entries(
+        *((lot, "West 40 Street", address) for lot, address in south.items()),
+        *(("31", "Sixth Avenue", "1030"), ("33", "Sixth Avenue", "1032")),
+        *(("40", "West 41 Street", "104"), ("42", "West 41 Street", "106")),
+    )
+    likely = [each for one in rings.fronts(rows)[1] for each in one.likely]
+    assert len(likely) > 1
+    assert len(likely) == len(set(likely))

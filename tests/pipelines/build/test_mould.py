@@ -87,6 +87,18 @@ def test_a_worker_has_supervisors_of_its_own() -> None:
     assert said.split() == ["[]"]
 
 
+def test_what_a_worker_and_its_supervisor_spend_counts_as_the_owner_s() -> None:
+    words = (
+        "import pickle; from pipelines.build.supervisor import Limits\n"
+        "with POOL.one() as one: one.ask(pickle.dumps(sum), range(10**8), Limits())"
+    )
+    said = ran(
+        f"done({words!r}).wait(); before = os.times().children_user\n"
+        "MOULD.end(); print(os.times().children_user - before)"
+    )
+    assert float(said) > 0.5
+
+
 def test_with_threads_nothing_is_forked() -> None:
     said = ran(
         "MOULD.end()\n"
