@@ -21,7 +21,7 @@ from pipelines.build.cluster import Unrun
 from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.external import serve
 from pipelines.build.isolation import ASIDE
-from pipelines.build.options import CityOptions, options
+from pipelines.build.options import CityOptions, options, processes_here
 from pipelines.build.prepared import (
     DIRECTED,
     Prepared,
@@ -63,6 +63,7 @@ __all__ = [
     "made_alone",
     "mark_of",
     "options",
+    "processes_here",
     "readied",
     "schemes_of",
     "serve",

@@ -104,6 +104,12 @@ def options(
     return found
 
 
+def processes_here(options: PipelineOptions) -> int:
+    """Tell how many processes of this machine are asked for."""
+    told = options.view_as(DirectOptions).direct_num_workers
+    return told or os.cpu_count() or 1
+
+
 def known(runner: str, beam: Sequence[str], prism: str) -> None:
     """Insist on a runner that is there, and on options that somebody knows.
 

@@ -36,8 +36,12 @@ def asking(
     """
     from pipelines.index import Ask
 
+    processes = 1
     if beam:
-        told(city, models=models, beam=beam)
+        options = told(city, models=models, beam=beam)
+        from pipelines.build import processes_here
+
+        processes = processes_here(options)
     if whose is Whose.none:
         return None
 
@@ -59,4 +63,4 @@ def asking(
         except plain as problem:
             raise fail(str(problem)) from problem
 
-    return Ask(boards, whose.value)
+    return Ask(boards, whose.value, processes)

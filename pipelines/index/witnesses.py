@@ -12,6 +12,7 @@ from nostalgin_core import placard
 from nostalgin_core.catalogue import Entry
 from nostalgin_core.placard import Key, Keys, Look
 from nostalgin_core.records import Rejection
+from pipelines.index import joining
 from pipelines.index.profiles import Profile
 from pipelines.index.readings import FOLDER, TABLE, TO_MEND, Reading
 from pipelines.index.told import stem
@@ -42,6 +43,7 @@ class Ask:
 
     boards: Boards
     which: Which = "silent"
+    processes: int = 1  # of this machine, that may join them with a list
 
 
 @dataclass(frozen=True)
@@ -107,13 +109,15 @@ def hear(
         every = ask.which == "all"
         wanted = [one for one in names if every or not (listed(one) or named(one))]
     boards = ask.boards(root, wanted) if ask is not None and wanted else {}
+    spelt = {
+        name: respelt(one, board) if board else one for name, one in boards.items()
+    }
+    looks = {name: one.looks for name, one in spelt.items() if one.looks}
+    processes = ask.processes if ask is not None else 1
+    joined = joining.joined(looks, keys, processes=processes)
     readings = []
     for name in names:
-        heard, seen = boards.get(name), None
-        if heard is not None and board:
-            heard = respelt(heard, board)
-        if heard is not None and heard.looks:
-            seen = placard.joined(heard.looks, keys)
+        heard, seen = spelt.get(name), joined.get(name)
         own, rows = named(name), listed(name)
         own = rows[0] if rows and own == rows[0] else own  # which is held once
         spoiled = heard is not None and heard.spoiled

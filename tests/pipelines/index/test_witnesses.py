@@ -7,8 +7,9 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
+from nostalgin_core import placard
 from nostalgin_core.placard import Look
-from pipelines.index import Ask, Heard
+from pipelines.index import Ask, Heard, joining
 from pipelines.index.index import index
 
 LIST = """photo,block,lot,street,address
@@ -150,3 +151,17 @@ def test_the_table_is_the_same_whatever_the_order_of_hearing(tmp_path: Path) -> 
     _, second, _ = indexed(tmp_path / "b", "all")
     one, other = (c / "readings.parquet" for c in (first, second))
     assert one.read_bytes() == other.read_bytes()
+
+
+def test_boards_are_joined_alike_by_one_process_and_by_two(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(joining, "MUCH", 2)
+    monkeypatch.setattr(joining, "AT_ONCE", 3)
+    keys = placard.known({(str(b), str(n)) for b in range(90, 110) for n in range(40)})
+    boards = {f"{b}.jpg": [Look(((f"{b}", f"-{b % 40}"),))] for b in range(90, 110)}
+    boards |= {"none.jpg": [Look((("x",),))], "slip.jpg": [Look((("97-l7",),))]}
+    for some in (keys, None):
+        alone = joining.joined(boards, some)
+        assert joining.joined(boards, some, processes=2) == alone
+        assert list(alone) == list(boards)
