@@ -13,7 +13,7 @@ from typing import Final
 from nostalgin_core import placard
 from nostalgin_core.placard import Joined, Keys, Look
 
-MUCH: Final = 2000  # boards: what a process joins in the time that it takes to start
+MUCH: Final = 2000  # boards: a process joins them in twice the time of its start
 AT_ONCE: Final = 200  # boards
 
 Looks = tuple[str, tuple[Look, ...]]  # of a photograph's board
