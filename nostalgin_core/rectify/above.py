@@ -39,7 +39,7 @@ def refused(
     looks = f"{abs(down_deg):.0f} degrees {'down' if down_deg > 0 else 'up'}"
     detail = (
         f"its camera stands at {high:.0%} of the height of what it shows and looks "
-        f"{looks}: use a photograph that was taken from the street, or draw its front"
+        f"{looks}: use a photograph that was taken from the street, or draw its quad"
     )
     return tuple(
         Rejection(photo.key, "rectify", REASON, detail, one.facade)
