@@ -4,6 +4,7 @@ import contextlib
 import os
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
@@ -20,6 +21,7 @@ from pipelines.store import Piece, Store, pack, pack_piece, pieces
 from pipelines.store.versions import Versions
 
 FEW: Final = 16  # pieces, which take less than the start of workers does
+THREADS: Final = 2  # of which each holds a pack
 
 
 def tidied(options: PipelineOptions, store: Store, versions: Versions) -> None:
@@ -37,9 +39,14 @@ def tidied(options: PipelineOptions, store: Store, versions: Versions) -> None:
             packing = Packing(replace(store, era=era))
             launched(options, partial(wired, packing, todo), store)
             return
-        for folder in folders:
-            stopping.check()
-            pack(store, folder)
+        with ThreadPoolExecutor(THREADS) as pool:  # they wait for the disk by turns
+            list(pool.map(partial(packed, store), folders))
+
+
+def packed(store: Store, folder: str) -> None:
+    """Pack the artifacts of one stage, unless somebody asks to end."""
+    stopping.check()
+    pack(store, folder)
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ app = typer.Typer(
 
 
 City = Annotated[Path, typer.Argument(help="A finished city of its photographs.")]
+Block = Annotated[str, typer.Option(help="How the labels' names begin.")]
 
 
 @app.callback()
@@ -31,7 +32,7 @@ def evaluate() -> None:
 def segmentation_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/ and labels/.")],
     *,
-    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    block: Block = "",
     sheet: Annotated[
         Path | None, typer.Option(help="Folder for pictures of each kind of error.")
     ] = None,
@@ -77,7 +78,7 @@ def rectification_command(
     detector: Annotated[
         str, typer.Option(help="Which lines: ours,lsd,hough; one or several.")
     ] = "ours",
-    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    block: Block = "",
     fronts: Annotated[int, typer.Option(min=1, help="Painted fronts.")] = 60,
     keep: Annotated[
         Path | None, typer.Option(help="Folder to keep painted photos in.")
@@ -230,7 +231,7 @@ def watermark_command(
 def views_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],
     *,
-    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    block: Block = "",
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
@@ -247,7 +248,7 @@ def fronts_command(
     data: Annotated[Path, typer.Argument(help="Holds photos/, labels/, lots.json.")],
     city: City,
     *,
-    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    block: Block = "",
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
@@ -279,7 +280,7 @@ def placards_command(
     folder: Annotated[Path, typer.Argument(help="Holds photos/ and labels/.")],
     city: Annotated[Path, typer.Argument(help="A folder to index the photographs in.")],
     *,
-    block: Annotated[str, typer.Option(help="How the labels' names begin.")] = "",
+    block: Block = "",
     models: ModelsFolder = None,
     as_json: AsJson = False,
     quiet: Quiet = False,

@@ -22,10 +22,7 @@ FRONTS = [
 
 @pytest.fixture(scope="module")
 def networks(tmp_path_factory: pytest.TempPathFactory) -> Networks:
-    folder = tmp_path_factory.mktemp("models")
-    made = {"segment": painted.segment_network(), "inpaint": painted.inpaint_network()}
-    models = Models(str(painted.write_models(folder, **made)))
-    return Networks(models.load("segment"), models.load("inpaint"))
+    return painted.networks(tmp_path_factory.mktemp("models"))
 
 
 @pytest.fixture(scope="module")

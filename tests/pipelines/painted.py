@@ -9,7 +9,9 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
+from nostalgin_core.steps import Networks
 from pipelines.index.index import index
+from pipelines.models import Models
 
 SIZE = (640, 480)  # h, w
 # The left one fills the middle of the picture: it is the one that is meant.
@@ -145,6 +147,13 @@ def write_models(folder: Path, **networks: bytes) -> Path:
         lock[f"{name}.onnx"] = hashlib.sha256(data).hexdigest()
     (folder / "models.lock").write_text(json.dumps(lock))
     return folder
+
+
+def networks(folder: Path) -> Networks:
+    """Write small networks to a folder, and load them."""
+    made = {"segment": segment_network(), "inpaint": inpaint_network()}
+    models = Models(str(write_models(folder, **made)))
+    return Networks(models.load("segment"), models.load("inpaint"))
 
 
 def inpaint_network() -> bytes:

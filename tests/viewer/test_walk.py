@@ -261,6 +261,18 @@ def test_a_building_is_found_with_keys_alone(visit: Visit) -> None:
     assert visit.page.locator("#panel").is_hidden()
 
 
+def test_a_cross_marks_the_middle_for_who_cannot_point_alone(visit: Visit) -> None:
+    cross = visit.page.locator("#cross")
+    shown = []
+    for state in ("", "locked", "keys"):
+        visit.ask("document.body.classList.remove('locked', 'keys')")
+        if state:
+            visit.ask(f"document.body.classList.add('{state}')")
+        shown.append(cross.is_visible())
+    visit.ask("document.body.classList.remove('keys')")
+    assert shown == [False, True, True]
+
+
 def test_a_folder_without_a_city_names_the_remedy(browser: Any, address: str) -> None:
     page = browser.new_page()
     page.route("**/site.json", lambda route: route.fulfill(status=404))

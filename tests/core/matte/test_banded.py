@@ -1,34 +1,19 @@
 import cv2
 import numpy as np
-from scipy import sparse
 
 from nostalgin_core.matte import banded, laplacian
-from nostalgin_core.matte.laplacian import System
-
-
-def _whole(system: System) -> np.ndarray:
-    n = len(system.right)
-    there = system.neighbours >= 0
-    rows = np.broadcast_to(np.arange(n), there.shape)[there]
-    upper = sparse.coo_array(
-        (system.values[there], (rows, system.neighbours[there])), shape=(n, n)
-    ).toarray()
-    return upper + np.triu(upper, 1).T
-
-
-def _noise(h: int, w: int, seed: int = 0) -> np.ndarray:
-    return np.random.default_rng(seed).random((h, w))
+from tests.core.matte.dense import noise, whole
 
 
 def test_both_solvers_find_the_dense_solution() -> None:
-    light = _noise(20, 24)
+    light = noise(20, 24)
     unknown = np.zeros((20, 24), bool)
     unknown[2:7, 3:20] = unknown[12:16, 1:9] = True
     known = (np.arange(24) > 12) * np.ones((20, 1))
     system = laplacian.system(light, unknown, known)
     ranks = banded.order(unknown).ranks
     assert sorted(ranks) == list(range(len(ranks)))
-    dense = np.linalg.solve(_whole(system), system.right)
+    dense = np.linalg.solve(whole(system), system.right)
     for solve in (banded.banded_solve, banded.sparse_solve):
         np.testing.assert_allclose(solve(system, ranks), dense, atol=1e-7)
 
@@ -36,9 +21,9 @@ def test_both_solvers_find_the_dense_solution() -> None:
 def test_what_is_far_from_singular_may_be_solved_imprecisely() -> None:
     unknown = np.zeros((40, 50), bool)
     unknown[3:37, 5:12] = unknown[20:29, 12:46] = True
-    believed = laplacian.Belief(_noise(40, 50, seed=1), 0.01)
+    believed = laplacian.Belief(noise(40, 50, seed=1), 0.01)
     system = laplacian.system(
-        _noise(40, 50), unknown, np.ones((40, 50)), prior=believed, epsilon=1e-5
+        noise(40, 50), unknown, np.ones((40, 50)), prior=believed, epsilon=1e-5
     )
     numbering = banded.order(unknown)
     rough = banded.solve(system, numbering, precise=False)

@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
-from scipy import sparse
 
 from nostalgin_core.matte import laplacian
-from nostalgin_core.matte.laplacian import System
+from tests.core.matte.dense import noise, whole
 
 
 def _slow(light: np.ndarray, epsilon: float) -> np.ndarray:
@@ -21,31 +20,17 @@ def _slow(light: np.ndarray, epsilon: float) -> np.ndarray:
     return matrix
 
 
-def _whole(system: System) -> np.ndarray:
-    n = len(system.right)
-    there = system.neighbours >= 0
-    rows = np.broadcast_to(np.arange(n), there.shape)[there]
-    upper = sparse.coo_array(
-        (system.values[there], (rows, system.neighbours[there])), shape=(n, n)
-    ).toarray()
-    return upper + np.triu(upper, 1).T
-
-
-def _noise(h: int, w: int, seed: int = 0) -> np.ndarray:
-    return np.random.default_rng(seed).random((h, w))
-
-
 @pytest.mark.parametrize("shape", [(9, 11), (3, 3), (3, 12), (12, 4)])
 @pytest.mark.parametrize("epsilon", [1e-7, 1e-3])
 def test_the_system_is_levins_matrix_without_known_rows(
     shape: tuple[int, int], epsilon: float
 ) -> None:
-    light, alpha = _noise(*shape), _noise(*shape, seed=1)
-    unknown = _noise(*shape, seed=2) > 0.4
+    light, alpha = noise(*shape), noise(*shape, seed=1)
+    unknown = noise(*shape, seed=2) > 0.4
     slow = _slow(light, epsilon)
     u = unknown.ravel()
     system = laplacian.system(light, unknown, alpha, epsilon=epsilon)
-    np.testing.assert_allclose(_whole(system), slow[np.ix_(u, u)], atol=1e-9)
+    np.testing.assert_allclose(whole(system), slow[np.ix_(u, u)], atol=1e-9)
     right = -slow[np.ix_(u, ~u)] @ alpha.ravel()[~u]
     np.testing.assert_allclose(system.right, right, atol=1e-9)
 
@@ -53,14 +38,14 @@ def test_the_system_is_levins_matrix_without_known_rows(
 def test_even_windows_do_not_blow_up() -> None:
     light = np.full((7, 9), 0.6)
     system = laplacian.system(light, np.ones((7, 9), bool), light, epsilon=1e-7)
-    np.testing.assert_allclose(_whole(system), _slow(light, 1e-7), atol=1e-6)
+    np.testing.assert_allclose(whole(system), _slow(light, 1e-7), atol=1e-6)
 
 
 def test_what_is_affine_in_the_image_costs_nothing() -> None:
     """The Laplacian's null space, up to epsilon (section 3 of Levin's paper)."""
-    light = _noise(12, 14)
+    light = noise(12, 14)
     unknown = np.zeros((12, 14), bool)
     unknown[3:9, 4:11] = True
     alpha = 0.2 + 0.7 * light
     system = laplacian.system(light, unknown, alpha, epsilon=1e-12)
-    np.testing.assert_allclose(_whole(system) @ alpha[unknown], system.right, atol=1e-8)
+    np.testing.assert_allclose(whole(system) @ alpha[unknown], system.right, atol=1e-8)

@@ -10,7 +10,6 @@ import pytest
 from nostalgin_core import evidence
 from nostalgin_core.steps import Networks
 from pipelines.explain.explain import Unreadable, clear, explain, finite, saved
-from pipelines.models import Models
 from tests.data import ROOT
 from tests.pipelines import painted
 
@@ -19,10 +18,7 @@ SCHEMA = json.loads((ROOT / "pipelines/explain/explain.schema.json").read_text()
 
 @pytest.fixture(scope="module")
 def networks(tmp_path_factory: pytest.TempPathFactory) -> Networks:
-    folder = tmp_path_factory.mktemp("models")
-    made = {"segment": painted.segment_network(), "inpaint": painted.inpaint_network()}
-    models = Models(str(painted.write_models(folder, **made)))
-    return Networks(models.load("segment"), models.load("inpaint"))
+    return painted.networks(tmp_path_factory.mktemp("models"))
 
 
 @pytest.fixture(scope="module")
