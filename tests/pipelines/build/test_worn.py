@@ -8,7 +8,15 @@ import pyarrow as pa
 import pytest
 
 from nostalgin_core import evidence, rests
-from nostalgin_core.records import Elevation, Seen, Standpoint
+from nostalgin_core.records import (
+    Box,
+    Elevation,
+    Facade,
+    Matted,
+    Photo,
+    Seen,
+    Standpoint,
+)
 from pipelines.build import artifacts
 from pipelines.build.bench import Bench
 from pipelines.build.stages import FacadeRef
@@ -123,3 +131,14 @@ def test_a_front_that_nobody_else_shows_leaves_nothing(
     assert not (tmp_path / "artifacts" / "borrow").exists()
     assert alone.inpaint_key(VERSIONS) == VERSIONS.inpaint_key("own", 0)
     assert front.inpaint_key(VERSIONS) != alone.inpaint_key(VERSIONS)
+
+
+def test_words_of_a_watermark_go_with_the_facade_it_was_taken_out_of() -> None:
+    view = elevation(wall(1), behind(CAR))
+    picture = Photo("k", view.image, Box(0, 0, *view.image.shape[::-1]))
+    mask = np.ones(view.image.shape, bool)
+    one = Facade(0, 0.9, True, 0.9, mask, mask, mask.astype(np.float32))  # noqa: FBT003
+    for words in ("", "A.org/records"):
+        table = artifacts.rectified_table(picture, Matted((one,), ()), (view,), words)
+        ((_, _, told),) = artifacts.seen_from(table)
+        assert told == words
