@@ -27,6 +27,7 @@ from nostalgin_core.segment.hiding import hiding
 from nostalgin_core.segment.pixels import mended
 from nostalgin_core.segment.posture import doubted, excess, sure, undone
 from nostalgin_core.segment.punch import healed, punches
+from nostalgin_core.segment.roofs import without_walls_behind
 from nostalgin_core.segment.sheet import of_frame, within
 from nostalgin_core.segment.sky import without_sky
 from nostalgin_core.segment.walls import without_walls
@@ -159,6 +160,7 @@ def trusted(
     *,
     facade_score: float = 0.45,
     occluder_score: float = 0.2,
+    roofed: bool = True,
 ) -> tuple[Instance, ...] | Rejection:
     """Keep what scores enough for its kind; a photo without a front is refused.
 
@@ -166,7 +168,8 @@ def trusted(
     is painted on fronts is dropped (`hiding`), pixels mend the masks of the rest, and
     fronts that prove to be bare walls go (`walls`), and so does sky on the others
     (`sky`); punched holes and flares on fronts are added, for the network was taught
-    few or none.
+    few or none. Last, fronts are cut off at their roofs (`roofs`), unless they are to
+    be left unroofed.
     """
     least = {"facade": facade_score}
     board = max((f.score for f in found.things if f.category == "placard"), default=0.0)
@@ -187,7 +190,8 @@ def trusted(
                 "what looks like fronts shows neither windows nor cornices: mask it by "
                 "hand if there is one",
             )
-        return punches(photo) + flares(photo, kept) + without_sky(photo, judged)
+        left = punches(photo) + flares(photo, kept) + without_sky(photo, judged)
+        return without_walls_behind(photo, left, found.pixels) if roofed else left
     return Rejection(
         photo.key,
         "segment",

@@ -39,7 +39,7 @@ from pipelines.store.stable import stable
 from pipelines.store.store import ARTIFACTS, key_of
 
 CODE: Final = {
-    "segment": 10,
+    "segment": 11,
     "matte": 7,
     "rectify": 11,
     "compare": 1,
