@@ -14,7 +14,7 @@ LONGEST_PX: Final = 400
 COARSE_PX: Final = 8.0  # tones wider than that differ by the print
 FEWEST: Final = 400  # texels that both saw
 MARGIN: Final = 0.67  # how much of likeness is that it fits here and nowhere else
-WEIGHTS: Final = (-5.42, 1.70, 3.63)  # for 1, log(1 + support), likeness
+WEIGHTS: Final = (-5.04, 1.70, 3.63)  # for 1, log(1 + support), likeness
 
 
 def likeness(first: View, second: View, matrix: Matrix3) -> float:
@@ -70,7 +70,8 @@ def probability(support: float, alike: float) -> float:
     """Tell how probable it is that two elevations are of one front, even odds before.
 
     Fitted to facades that the network found in block 996, and to painted fronts that
-    share nothing but windows; `nostalgin evaluate views` holds it against labels.
+    share nothing but windows, the constant to what is claimed of the three blocks since
+    a mark counts once; `nostalgin evaluate views` holds it against labels.
     """
     constant, of_support, of_likeness = WEIGHTS
     odds = constant + of_support * np.log1p(support) + of_likeness * alike

@@ -56,7 +56,9 @@ def marks(view: View) -> Marks:
     seen = cv2.resize(known.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
     seen = cv2.erode(seen, np.ones((RIM_PX, RIM_PX), np.uint8))
     sift = cv2.SIFT.create(MOST, contrastThreshold=0.02, edgeThreshold=20)
-    found = sift.detect(even, seen) if min(even.shape) >= SHORTEST_PX else ()
+    every = sift.detect(even, seen) if min(even.shape) >= SHORTEST_PX else ()
+    # One that is found in several directions is one mark: all count as upright.
+    found = tuple({(one.pt, one.size): one for one in every}.values())
     for one in found:
         one.angle = 0.0
     looks = sift.compute(even, found)[1] if found else None

@@ -42,11 +42,11 @@ CODE: Final = {
     "segment": 11,
     "matte": 7,
     "rectify": 11,
-    "compare": 1,
+    "compare": 2,
     "inpaint": 6,
     "block": 8,
     "thumbnail": 2,
-    "borrow": 4,
+    "borrow": 5,
     "placard": 1,
 }
 ROOMS: Final[dict[str, tuple[ModuleType, ...]]] = {

@@ -20,7 +20,7 @@ from pipelines.console.hush import hushed
 from pipelines.demo import painted
 from pipelines.index.index import index
 from pipelines.models import one_thread
-from pipelines.site import CURRENT
+from pipelines.store.runs import CURRENT
 
 VIEWS = ("assign", "borrow")
 

@@ -129,3 +129,10 @@ def test_the_same_elevations_give_the_same_overlay() -> None:
     assert twice[1] is not None
     assert np.array_equal(twice[0].matrix, twice[1].matrix)
     assert twice[0].support == twice[1].support
+
+
+def test_no_mark_is_found_twice() -> None:
+    found = marks(whole(front(1)))
+    told = np.column_stack([found.at_px, found.size_px])
+    assert len(told) > 100
+    assert len(np.unique(told, axis=0)) == len(told)
