@@ -162,7 +162,9 @@ def serve(asking: socket.socket) -> None:
                     there.remove(made)
                 continue
             message, files, _, _ = socket.recv_fds(asking, len(ASKED), 2)
-            if not message:
+            if not message:  # its workers have ended, or nobody wants them any more
+                for made in there:
+                    os.kill(made.process, signal.SIGKILL)
                 return
             there.append(made_of(Connection(files[0]), errors=files[1]))
 

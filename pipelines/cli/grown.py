@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from pipelines import plural
 from pipelines.cli.asking import Whose, asking
 from pipelines.cli.index import kept_from_others
-from pipelines.console import Voice, fail
+from pipelines.console import Voice, fail, laid_out
 
 if TYPE_CHECKING:
     from pipelines.index import Indexed, Kept
@@ -58,8 +58,7 @@ def indexed_again(city: str, voice: Voice, models: str, beam: Sequence[str]) -> 
     made = kept_from_others(city, work)
     voice.say(
         "indexed",
-        f"indexed again: {plural.of(made.photos, 'photo')}, "
-        f"{plural.of(made.fronts, 'front')} in {plural.of(made.blocks, 'block')}, "
+        f"indexed again: {laid_out(made)}, "
         f"{plural.of(len(made.without_front), 'photo')} without a front",
         photos=made.photos,
         fronts=made.fronts,

@@ -15,7 +15,7 @@ from pipelines.console.failure import (
 from pipelines.console.hush import hushed
 from pipelines.console.options import Quiet
 from pipelines.console.progress import Watch
-from pipelines.console.voice import Voice, indexed, summed
+from pipelines.console.voice import Voice, indexed, laid_out, summed
 
 __all__ = [
     "Quiet",
@@ -27,6 +27,7 @@ __all__ = [
     "folded",
     "hushed",
     "indexed",
+    "laid_out",
     "opened_streams",
     "summed",
     "unwritable",

@@ -118,6 +118,12 @@ def summed(report: "Report", voice: Voice) -> None:
     )
 
 
+def laid_out(made: "Indexed") -> str:
+    """Count the photos, fronts and blocks of a manifest."""
+    fronts, blocks = plural.of(made.fronts, "front"), plural.of(made.blocks, "block")
+    return f"{plural.of(made.photos, 'photo')}, {fronts} in {blocks}"
+
+
 def indexed(made: "Indexed", city: str, voice: Voice) -> None:
     """Tell what came of an index."""
     for warning in made.warnings:
@@ -132,9 +138,7 @@ def indexed(made: "Indexed", city: str, voice: Voice) -> None:
         voice.say("witnesses", words, boards=made.boards, **made.witnesses)
     voice.say(
         "done",
-        f"{plural.of(made.photos, 'photo')}, {plural.of(made.fronts, 'front')} in "
-        f"{plural.of(made.blocks, 'block')}, "
-        f"{plural.of(made.without_photo, 'front')} without a photo, "
+        f"{laid_out(made)}, {plural.of(made.without_photo, 'front')} without a photo, "
         f"{plural.of(made.widths_assumed, 'width')} assumed: {city}/manifest.csv",
         photos=made.photos,
         fronts=made.fronts,

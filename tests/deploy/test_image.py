@@ -1,6 +1,6 @@
 """The image's recipe: locked by hash, no torch, not root; Flink's options are known.
 
-What can't be known without Docker is checked by `deploy/check.sh`, which no test runs.
+What can't be known without Docker is checked by `deploy/check.sh`, which CI runs.
 """
 
 import re
