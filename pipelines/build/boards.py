@@ -25,7 +25,8 @@ from nostalgin_core import placard
 from nostalgin_core.records import Instance, Rejection
 from pipelines import stopping
 from pipelines.build.bench import Bench
-from pipelines.build.embedded import forked_ahead
+from pipelines.build.embedded import in_process
+from pipelines.build.isolation import POOL
 from pipelines.build.launched import launched
 from pipelines.build.options import CityOptions
 from pipelines.build.prepared import bench_of
@@ -196,8 +197,8 @@ def boards(
     one_thread()
     ours = options.view_as(CityOptions)
     store = Store(ours.city)
-    if ours.stage_seconds:
-        forked_ahead(options, ours.city)
+    if in_process(options) and ours.stage_seconds:
+        POOL.fill()  # before there are threads and open files
     bench = bench_of(ours, store)
     wired = wire(bench, root, names)
     for part in range(wired.parts):  # of a run that was killed

@@ -14,7 +14,8 @@ from pipelines import plural, site, stopping
 from pipelines.build import cluster, rows, twin
 from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
-from pipelines.build.embedded import forked_ahead
+from pipelines.build.embedded import in_process
+from pipelines.build.isolation import POOL
 from pipelines.build.launched import launched
 from pipelines.build.noted import cpu_s, note, stages
 from pipelines.build.options import CityOptions, part
@@ -88,8 +89,8 @@ def readied(options: PipelineOptions) -> None:
     """
     one_thread()
     ours = options.view_as(CityOptions)
-    if ours.stage_seconds:
-        forked_ahead(options, ours.city)
+    if in_process(options) and ours.stage_seconds:
+        POOL.fill()  # before there are threads and open files
     cluster.reached(options)  # which takes a second, where somebody is there
 
 

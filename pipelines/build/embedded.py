@@ -23,9 +23,6 @@ from apache_beam.options.pipeline_options import (
 )
 from apache_beam.transforms.environments import SubprocessSDKEnvironment
 
-from pipelines.build.isolation import POOL
-from pipelines.build.mould import MOULD, Cast
-
 if TYPE_CHECKING:  # its own workers load this file, too
     from apache_beam.runners.portability.fn_api_runner.fn_runner import FnApiRunner
 
@@ -78,18 +75,6 @@ def in_process(options: PipelineOptions) -> bool:
     return near and options.view_as(DirectOptions).direct_num_workers == 1
 
 
-def forked_ahead(options: PipelineOptions, city: str) -> None:
-    """Fork what the work will need, before this process has threads and open files.
-
-    A client of object stores has threads, which no fork may share: there workers are
-    started from the beginning.
-    """
-    if in_process(options):
-        POOL.fill()
-    elif processes(options) and "://" not in city:
-        MOULD.fill()
-
-
 def command() -> str:
     """Write what a shell is to start as a worker."""
     return f"exec {shlex.quote(sys.executable)} -m {WORKER}"  # no shell stays
@@ -133,24 +118,6 @@ def ending_with_a_worker() -> Iterator[None]:
         finally:
             over.set()
             signal.signal(signal.SIGUSR1, before)
-
-
-@contextlib.contextmanager
-def from_the_mould() -> Iterator[None]:
-    """Have workers forked from the mould, where there is one."""
-    if not MOULD.ready:
-        yield
-        return
-    from apache_beam.runners.portability import local_job_service
-
-    class Popen:  # all that Beam asks of `subprocess` there
-        @staticmethod
-        def Popen(command: str, *, shell: bool, env: dict[str, str]) -> Cast:  # noqa: N802
-            del command, shell
-            return MOULD.start(env)
-
-    with mock.patch.object(local_job_service, "subprocess", Popen):
-        yield
 
 
 @contextlib.contextmanager

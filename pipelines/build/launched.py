@@ -67,8 +67,7 @@ def ran(
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
     wire(pipeline)
     try:
-        ours = embedded.on_loopback(), embedded.from_the_mould()
-        with ours[0], ours[1], embedded.ending_with_a_worker():
+        with embedded.on_loopback(), embedded.ending_with_a_worker():
             result = pipeline.run()
             result.wait_until_finish()
     except embedded.WorkerLost as problem:

@@ -1,8 +1,8 @@
 """What the start of a run's process costs: imports and both networks, in CPU seconds.
 
 Baseline: a process that loads Beam alone, and one that loads Beam as it loads itself.
-A worker that is forked from the mould (`pipelines/build/mould.py`), as those of a run
-and of `nostalgin workers` are, has loaded all but the networks.
+A worker that is forked from the mould (`pipelines/build/mould.py`), as those of
+`nostalgin workers` are, has loaded all but the networks.
 
     OMP_NUM_THREADS=1 python tests/bench/bench_start.py
 """

@@ -115,15 +115,19 @@ def test_a_build_asks_nobody_and_leaves_nothing_outside_the_city(
     assert (city / "site" / "tileset.json").is_file()
 
 
-def children(process: int) -> list[int]:
-    """List the processes that another has started."""
-    told = Path(f"/proc/{process}/task").glob("*/children")
-    return [int(one) for path in told for one in path.read_text().split()]
-
-
-def workers(driver: int) -> list[int]:
-    """List the workers of a run, which its mould has forked."""
-    return [one for mould in children(driver) for one in children(mould)]
+def workers(city: Path) -> list[int]:
+    """List the workers' processes that build a city, and their children, by number."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (path / "cmdline").read_bytes()
+            folder = (path / "environ").read_bytes()
+        except OSError:
+            continue
+        ours = str(city).encode() in folder and embedded.WORKER.encode() in words
+        if ours and b"sh\0-c" not in words:
+            found.append(int(path.name))
+    return sorted(found)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are listed in /proc")
@@ -131,10 +135,11 @@ def test_a_worker_that_is_killed_ends_the_run_in_words(tmp_path: Path) -> None:
     city = painted.write_city(tmp_path)
     words = ["-m", "pipelines.cli", "build", str(city), "--direct_num_workers=2"]
     command = [sys.executable, *words, "--models", str(tmp_path / "models")]
-    with subprocess.Popen(command, stderr=subprocess.PIPE) as driver:
+    given = os.environ | {"NOSTALGIN_CITY": str(city)}
+    with subprocess.Popen(command, stderr=subprocess.PIPE, env=given) as driver:
         while driver.poll() is None and not (city / "artifacts").exists():
             time.sleep(0.05)
-        os.kill(workers(driver.pid)[0], signal.SIGKILL)
+        os.kill(workers(city)[0], signal.SIGKILL)
         try:
             _, told = driver.communicate(timeout=90)
         finally:
