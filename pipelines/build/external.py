@@ -25,9 +25,7 @@ from apache_beam.portability.api import (
 from google.protobuf import json_format, text_format
 
 from pipelines.build.embedded import WORKER
-from pipelines.build.mould import MOULD, Cast
 
-Worker = subprocess.Popen[bytes] | Cast
 ENDPOINTS: Final = ("control", "logging", "status")
 WAIT_S: Final = 60.0  # for what a runner should answer
 GRACE_S: Final = 10.0
@@ -38,7 +36,7 @@ class External(beam_fn_api_pb2_grpc.BeamFnExternalWorkerPoolServicer):
 
     def __init__(self) -> None:
         """Begin with none."""
-        self._workers: dict[str, Worker] = {}
+        self._workers: dict[str, subprocess.Popen[bytes]] = {}
 
     def StartWorker(self, request: Any, _: Any) -> Any:  # noqa: N802 - Beam's name
         """Start a worker that calls where it is told to."""
@@ -89,10 +87,8 @@ def environment(request: Any, info: Any) -> dict[str, str]:
     return told
 
 
-def started(env: dict[str, str]) -> Worker:
-    """Start a worker, from the mould where there is one."""
-    if MOULD.ready:
-        return MOULD.start(env)
+def started(env: dict[str, str]) -> subprocess.Popen[bytes]:
+    """Start a worker in an environment."""
     return subprocess.Popen(
         [sys.executable, "-m", WORKER],
         env=env,
@@ -101,7 +97,7 @@ def started(env: dict[str, str]) -> Worker:
     )
 
 
-def ended(worker: Worker) -> None:
+def ended(worker: subprocess.Popen[bytes]) -> None:
     """Ask a worker to go, and see that it does."""
     worker.terminate()
     try:
@@ -117,7 +113,6 @@ def serve(host: str, port: int) -> None:
     Raises:
         OSError: if the address can't be had.
     """
-    MOULD.fill()
     pool = External()
     server = grpc.server(futures.ThreadPoolExecutor(max_workers=4))
     beam_fn_api_pb2_grpc.add_BeamFnExternalWorkerPoolServicer_to_server(pool, server)

@@ -25,7 +25,6 @@ from pipelines.build.supervisor import ATTEMPTS, Died, Done, Failed, Limits
 from pipelines.store import Aside, Unstored
 
 ASIDE: Final = "put aside"
-FIRST_FILE: Final = 3
 MOST_FILES: Final = 1 << 16  # that a process may well have open
 MEMBER: Final = 1 / 30  # of an element's time, for each member of a group
 REMEDY: Final = "`nostalgin build --retry` tries it again, with the limits given then"
@@ -50,7 +49,7 @@ class Supervisor:
         """
         self._connection, its = Pipe()
         fork = hasattr(os, "fork") and threading.active_count() == 1
-        self._wait = waited(its) if fork else started(its)
+        self._wait = forked(its) if fork else started(its)
         its.close()
 
     def ask(
@@ -79,28 +78,17 @@ def here() -> str:
         return ""
 
 
-def waited(its: Connection) -> Callable[[], object]:
-    """Fork a supervisor, and give how to wait for its end."""
-    process = forked(its.fileno(), partial(supervisor.serve, its))
-    return partial(os.waitpid, process, 0)
-
-
-def forked(file: int, work: Callable[[], object]) -> int:
-    """Fork a process for some work; of what is open here it keeps one file."""
+def forked(its: Connection) -> Callable[[], object]:
+    """Fork a supervisor; of what this process has open it keeps its connection."""
     process = os.fork()
     if not process:
         try:
-            close_all_but(file)
-            work()
+            os.closerange(3, its.fileno())
+            os.closerange(its.fileno() + 1, MOST_FILES)
+            supervisor.serve(its)
         finally:
             os._exit(0)  # whatever happens, no copy of this process goes on
-    return process
-
-
-def close_all_but(file: int) -> None:
-    """Close what is open, but one file and the three that every process has."""
-    os.closerange(FIRST_FILE, file)
-    os.closerange(file + 1, MOST_FILES)
+    return partial(os.waitpid, process, 0)
 
 
 def started(its: Connection) -> Callable[[], object]:
@@ -138,10 +126,6 @@ class Pool:
             raise
         with self._lock:
             self._free.append(lent)
-
-    def forget(self) -> None:
-        """Leave those that there are to the process that this one was forked from."""
-        self._free = []
 
     def end(self) -> None:
         """Let all go."""

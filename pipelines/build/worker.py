@@ -5,9 +5,7 @@ import sys
 from pipelines import stopping
 from pipelines.build.isolation import POOL
 
-
-def work() -> None:
-    """Work for the runner that the environment names, until it wants no more."""
+if __name__ == "__main__":
     stopping.left_to_the_driver()
     import pipelines.build.blocks  # noqa: F401 - what both will need, loaded once
 
@@ -15,7 +13,3 @@ def work() -> None:
     from apache_beam.runners.worker import sdk_worker_main
 
     sdk_worker_main.main(sys.argv)
-
-
-if __name__ == "__main__":
-    work()

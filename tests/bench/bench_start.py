@@ -1,8 +1,6 @@
 """What the start of a run's process costs: imports and both networks, in CPU seconds.
 
 Baseline: a process that loads Beam alone, and one that loads Beam as it loads itself.
-A worker that is forked from the mould (`pipelines/build/mould.py`), as those of
-`nostalgin workers` are, has loaded all but the networks.
 
     OMP_NUM_THREADS=1 python tests/bench/bench_start.py
 """
@@ -18,16 +16,11 @@ NETWORKS = (
     "from pipelines.models import Models, one_thread; one_thread(); "
     "m = Models(); m.load('segment'); m.load('inpaint')"
 )
-FORKED = (  # a process that is forked begins with no CPU time spent
-    f"{WORKER}; import os; process = os.fork(); "
-    "process and os._exit(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]))"
-)
 STARTS = {
     "Beam alone": "import apache_beam.runners.worker.sdk_worker_main",
     "Beam, lean": f"{LEAN}; import apache_beam.runners.worker.sdk_worker_main",
     "a worker": WORKER,
     "a worker and its networks": f"{WORKER}; {NETWORKS}",
-    "the same, forked": f"{FORKED}; {NETWORKS}",
 }
 
 
