@@ -21,6 +21,8 @@ from multiprocessing.connection import Connection, Pipe, wait
 from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
+from pipelines.models import one_thread
+
 ATTEMPTS: Final = 2  # what another process did may kill one
 GIBIBYTE: Final = 1 << 30
 KIBIBYTES_A_MEGABYTE: Final = 1e6 / 1024
@@ -137,7 +139,8 @@ class Crew:
 
 
 def serve(worker: Connection) -> None:
-    """Answer a worker until it is gone."""
+    """Answer a worker until it is gone, with one thread a library."""
+    one_thread()  # whoever it was forked from, or else sums differ in their last bits
     for one in (signal.SIGINT, signal.SIGTERM):  # the worker hears it, and goes
         signal.signal(one, signal.SIG_IGN)
     crew = Crew(worker)

@@ -10,8 +10,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
+import threadpoolctl
 
 from nostalgin_core.records import Rejection
 from pipelines.build.isolation import POOL, Crashed, Isolation
@@ -169,6 +171,23 @@ def here(_: object) -> tuple[int, int]:
 def test_a_process_serves_many_elements(store: Store) -> None:
     act, one = pickle.dumps(here), isolation(store)
     assert done(one, "1", act) == done(one, "2", act)
+
+
+def threads(_: object) -> int:
+    known = threadpoolctl.threadpool_info()
+    return max(cv2.getNumThreads(), *(one["num_threads"] for one in known))
+
+
+def test_a_process_keeps_its_libraries_to_one_thread_whoever_it_is_of(
+    store: Store,
+) -> None:
+    POOL.end()
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(2)
+    found = done(isolation(store), "1", pickle.dumps(threads))
+    cv2.setNumThreads(before)
+    POOL.end()
+    assert found == 1
 
 
 @pytest.mark.parametrize("others", [0, 1])
