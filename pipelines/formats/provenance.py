@@ -97,18 +97,23 @@ class Writer:
 
         A version is a hash of parameters and network, so equal ones have equal both.
         """
-        from pipelines.store.versions import PARAMETERS, version
+        from pipelines.index import known_watermarks, watermark_sha256
+        from pipelines.store.versions import MARKED, PARAMETERS, version
 
+        marks = {name: watermark_sha256(name) for name in ("", *known_watermarks())}
         models = Models(self._noted.get("options", {}).get("models") or str(PACKAGED))
         for stage in STAGES:
             name = f"stage:{stage}"
             made_by = self._noted.get("versions", {}).get(stage, "")
             told = {"prov:label": stage, "nostalgin:version": made_by}
             with contextlib.suppress(Unlocked):  # networks that were moved away since
-                if version(stage, models) == made_by:
-                    told["nostalgin:parameters"] = PARAMETERS[stage]
-                    if stage in NETWORKS:
-                        self._network(stage, models.sha256(stage))
+                for mark, sha256 in marks.items():
+                    if version(stage, models, sha256) == made_by:
+                        told["nostalgin:parameters"] = PARAMETERS[stage]
+                        off = {"nostalgin:watermark": mark} if stage == MARKED else {}
+                        told |= off if mark else {}
+                if stage in NETWORKS and "nostalgin:parameters" in told:
+                    self._network(stage, models.sha256(stage))
             self._said["activity"][name] = told
             self._say("wasInformedBy", informed=self._run, informant=name)
 

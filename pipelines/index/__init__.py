@@ -19,6 +19,7 @@ from pipelines.index.index import Indexed, index
 from pipelines.index.profiles import PROFILE, of_city
 from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned, of_folder
+from pipelines.index.watermarks import known as known_watermarks
 from pipelines.index.watermarks import sha256 as watermark_sha256
 from pipelines.index.watermarks import watermark
 from pipelines.index.witnesses import Ask, Heard
@@ -38,6 +39,7 @@ __all__ = [
     "index",
     "keep",
     "known",
+    "known_watermarks",
     "load",
     "of_city",
     "of_folder",

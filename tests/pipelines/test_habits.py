@@ -103,7 +103,7 @@ MEASURED = {  # which module's report, and which one's words
     "segmentation": ("segmentation", "segmentation_table"),
     "rectification": ("rectification", "rectification_table"),
     **{one: (one, one) for one in ("inpainting", "slips", "heights", "views")},
-    **{one: (one, one) for one in ("fronts", "borrowed", "placards")},
+    **{one: (one, one) for one in ("fronts", "borrowed", "placards", "watermark")},
     "city": ("layout", "layout"),
 }
 TWO = ("heights", "city", "fronts", "placards")  # of which two folders are asked

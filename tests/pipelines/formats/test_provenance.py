@@ -48,6 +48,8 @@ def test_every_stage_tells_its_version_and_its_parameters(
         one = document["activity"][f"stage:{stage}"]
         assert one["nostalgin:version"]
         assert json.loads(one["nostalgin:parameters"])
+        off = {"nyc-records"} if stage == "rectify" else set()
+        assert {*filter(None, [one.get("nostalgin:watermark")])} == off
 
 
 def test_a_building_is_derived_from_the_photographs_that_it_wears(
