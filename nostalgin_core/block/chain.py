@@ -22,7 +22,7 @@ a rectangle. A ring of one side is a straight row, a ring of two sides an open c
 """
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,6 +33,7 @@ from nostalgin_core.block import outline
 from nostalgin_core.block.apart import apart
 from nostalgin_core.block.depth import measured
 from nostalgin_core.block.pieces import (
+    DOUBT,
     Piece,
     fitted,
     pieces,
@@ -95,6 +96,7 @@ def chain(
     spans = [
         fitted(side, length) for side, length in zip(sides, lengths_m, strict=True)
     ]
+    _shorten(sides, spans, starts_m, headings, closed=closed)
     name = f"{fronts[0].block}-gap-{fronts[0].ring}"
     footprints = _walked(sides, spans, starts_m, headings, closed=closed)
     gaps = _gaps(sides, spans, starts_m, headings, closed=closed, name=name)
@@ -123,33 +125,25 @@ def _walked(
     *,
     closed: bool,
 ) -> list[Footprint]:
-    """Walk round the ring once and place each building where its first front starts.
-
-    A piece that continues a building from round the corner is left out: that building
-    was placed before, or will be when the walk comes to its first side.
-    """
+    """Walk round the ring once and place each building where its first front starts."""
     placed: list[Footprint] = []
-    for here, side in enumerate(sides):
-        for index, piece in enumerate(side):
-            before = sides[here - 1] if closed or here else []
-            if index == 0 and before and before[-1].building_id == piece.building_id:
-                continue
-            run = _run(sides, here, index, closed=closed)
-            points = [starts_m[here] + spans[here][index][0] * _ahead(headings[here])]
-            points += [starts_m[side] for side, _ in run[1:]]
-            end, last = run[-1]
-            points.append(starts_m[end] + spans[end][last][1] * _ahead(headings[end]))
-            if len(run) == 1:
-                back = piece.depth_m * _party_walls(
-                    headings, here, spans[here], spans[here][index], closed=closed
-                )
-                points += [points[1] + back[1], points[0] + back[0]]
-            elif len(run) == 2:
-                points.append(points[0] + points[2] - points[1])
-            elif len(run) == 3 and sides[end][last].front_id is None:
-                points[3] = _as_deep(points)
-            fronts = tuple(sides[s][i].front_id for s, i in run)
-            placed.append(_footprint(piece.building_id, points, fronts))
+    for run in _runs(sides, closed=closed):
+        (here, index), (end, last) = run[0], run[-1]
+        piece = sides[here][index]
+        points = [
+            starts_m[here] + spans[here][index][0] * _ahead(headings[here]),
+            *(starts_m[side] for side, _ in run[1:]),
+            starts_m[end] + spans[end][last][1] * _ahead(headings[end]),
+        ]
+        if len(run) == 1:
+            back = piece.depth_m * _party_walls(
+                headings, here, spans[here], spans[here][index], closed=closed
+            )
+            points += [points[1] + back[1], points[0] + back[0]]
+        elif len(run) == 2:
+            points.append(points[0] + points[2] - points[1])
+        fronts = tuple(sides[s][i].front_id for s, i in run)
+        placed.append(_footprint(piece.building_id, points, fronts))
     if not placed:  # one building is the whole block
         fronts = tuple(side[0].front_id for side in sides)
         points = [*starts_m, (starts_m[-1] + starts_m[0]) / 2]
@@ -168,11 +162,12 @@ def _gaps(
 ) -> dict[str, list[Footprint]]:
     """Close the openings where lots are missing, each by a building without a front.
 
-    It is as deep as the shallower of the two beside it, called by its side, and listed
-    under the building that it comes after.
+    It is as deep as the shallower of the two beside it, called by its side (a second
+    one there by its number, too), and listed under the building that it comes after.
     """
     made: dict[str, list[Footprint]] = defaultdict(list)
     for here, side in enumerate(sides):
+        count = 0
         for index in range(1, len(side)):
             gap = (spans[here][index - 1][1], spans[here][index][0])
             if gap[1] - gap[0] < NOTHING_M:
@@ -181,21 +176,57 @@ def _gaps(
             back = back * min(side[index - 1].depth_m, side[index].depth_m)
             ends = starts_m[here] + np.outer(gap, _ahead(headings[here]))
             points = [*ends, ends[1] + back[1], ends[0] + back[0]]
-            closing = _footprint(f"{name}-{here}", points, (None,))
+            count += 1
+            called = f"{name}-{here}" + (f"-{count}" if count > 1 else "")
+            closing = _footprint(called, points, (None,))
             made[side[index - 1].building_id].append(closing)
     return made
 
 
-def _as_deep(points: Sequence[Vector]) -> Vector:
-    """Draw the unseen end of a building round two corners back to its other end.
+def _shorten(
+    sides: Sequence[Sequence[Piece]],
+    spans: Sequence[list[tuple[float, float]]],
+    starts_m: Points,
+    headings: Float[np.ndarray, " n"],
+    *,
+    closed: bool,
+) -> None:
+    """End what turns two corners and is unseen on its last side as deep as it began.
 
-    So its inner wall runs along the street between, and clears its neighbours.
+    So its inner wall runs along the street between, and clears its neighbours. Little
+    that it leaves of the last side is the next one's; more is an opening like others.
     """
-    a, b, c, d = points
-    along = (c - b) / np.hypot(*(c - b))
-    inward = np.array([-along[1], along[0]])
-    deep, reach = float((a - b) @ inward), float((d - c) @ inward)
-    return c + min(1.0, deep / max(reach, 1e-9)) * (d - c)
+    for run in _runs(sides, closed=closed):
+        (here, index), (end, last) = run[0], run[-1]
+        if len(run) != 3 or sides[end][last].front_id is not None:
+            continue
+        ahead = _ahead(headings[run[1][0]])
+        inward = np.array([-ahead[1], ahead[0]])
+        began_m = starts_m[here] + spans[here][index][0] * _ahead(headings[here])
+        from_m, to_m = spans[end][last]
+        deep = float((began_m - starts_m[run[1][0]]) @ inward)
+        reach = float(_ahead(headings[end]) @ inward) * to_m
+        left_m = to_m * (1.0 - min(1.0, deep / max(reach, 1e-9)))
+        spans[end][last] = from_m, to_m - left_m
+        beside = spans[end][last + 1 : last + 2]
+        small = left_m < DOUBT * spans[end][-1][1]
+        if beside and small and beside[0][0] - to_m < NOTHING_M:
+            spans[end][last + 1] = to_m - left_m, beside[0][1]
+
+
+def _runs(
+    sides: Sequence[Sequence[Piece]], *, closed: bool
+) -> Iterator[list[tuple[int, int]]]:
+    """List the pieces of each building, from its first front on.
+
+    A piece that continues a building from round the corner begins none.
+    """
+    for here, side in enumerate(sides):
+        for index, piece in enumerate(side):
+            before = sides[here - 1] if closed or here else []
+            if index == 0 and before and before[-1].building_id == piece.building_id:
+                continue
+            yield _run(sides, here, index, closed=closed)
 
 
 def _run(

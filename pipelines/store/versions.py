@@ -44,7 +44,7 @@ CODE: Final = {
     "rectify": 11,
     "compare": 2,
     "inpaint": 6,
-    "block": 8,
+    "block": 9,
     "thumbnail": 2,
     "borrow": 5,
     "placard": 1,

@@ -1,6 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
+import shapely
 
 from nostalgin_core.block.chain import chain
 from nostalgin_core.records import Front
@@ -29,6 +30,22 @@ def test_a_gap_is_closed_by_a_wall_that_no_front_stands_on() -> None:
             width = {one.front_id: one.width_m for one in fronts}.get(front_id or "")
             if width and one.building_id == "9-b":
                 assert np.hypot(*(b - a)) < 1.03 * width
+
+
+def test_what_an_unseen_end_leaves_of_its_side_is_closed_too() -> None:
+    fronts = [
+        front(0, 0, "a", 30.0, address="101"),
+        front(0, 1, "b", 10.0, address="103"),
+        front(1, 2, "b", 60.0),
+        front(2, 3, "c", 8.0, address="200"),
+        front(2, 4, "d", 14.0, address="202"),
+        front(3, 5, "a", 60.0),
+    ]
+    ring = chain(fronts)
+    grounds = [shapely.Polygon(one.corners_m).buffer(0.05) for one in ring.footprints]
+    open_m = shapely.LinearRing(ring.outline_m).difference(shapely.union_all(grounds))
+    assert open_m.length < 1e-6
+    assert len({one.building_id for one in ring.footprints}) == len(ring.footprints)
 
 
 def test_a_ring_of_sound_widths_misses_its_start_by_nothing() -> None:
