@@ -57,10 +57,7 @@ def explain_command(
     from pipelines import explain
     from pipelines import models as shelf
 
-    try:
-        data = bounded.read(photo, bounded.PHOTO_BYTES)
-    except OSError as problem:
-        raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
+    data = content(photo)
     voice = Voice(errors, quiet=quiet)
     mended = redrawn(photo, data, corrections, voice)
     try:
@@ -76,6 +73,14 @@ def explain_command(
     tell(report, out, voice)
     if mended.refused:
         raise typer.Exit(TOO_MANY_REJECTIONS)
+
+
+def content(photo: Path) -> bytes:
+    """Read a photograph's file, or end in words that name it."""
+    try:
+        return bounded.read(photo, bounded.PHOTO_BYTES)
+    except OSError as problem:
+        raise fail(f"{photo}: {problem.strerror}; name an image file") from problem
 
 
 def tell(report: dict[str, Any], out: Path, voice: Voice) -> None:

@@ -102,18 +102,10 @@ def models(
         move = placed.moves[row["block"]]
         place, turn = placed.spots.get(row["block"], (None, move.turn_rad))
         for building in record["buildings"]:
-            building["rejections"] += why.get(building["id"], [])
-            building.update(built.get(building["id"], {}))
-            for photo in building["photos"]:  # it says whose the block's photos are
-                photo.update(words.get(photo["key"], {}))
-                mark = photo.get("watermark", "")
-                photo["credit"] = credited(photo.get("credit", ""), mark)
-            there = {photo["key"] for photo in building["photos"]}
-            building["photos"] += [
-                photo
-                for photo in taken.get(building["id"], [])
-                if photo["key"] not in there
-            ]
+            name = building["id"]
+            building["rejections"] += why.get(name, [])
+            building.update(built.get(name, {}))
+            building["photos"] = photographs(building, words, taken.get(name, []))
         made.append(
             site.BlockModel(
                 name=row["block"],
@@ -133,6 +125,20 @@ def models(
             )
         )
     return made
+
+
+def photographs(
+    building: dict[str, Any],
+    words: Mapping[str, dict[str, Any]],
+    taken: Sequence[dict[str, Any]],
+) -> list[dict[str, Any]]:
+    """List a building's photos with what their rows say, and others taken for it."""
+    shown = [photo | words.get(photo["key"], {}) for photo in building["photos"]]
+    for photo in shown:  # it says whose the block's photos are
+        mark = photo.get("watermark", "")
+        photo["credit"] = credited(photo.get("credit", ""), mark)
+    there = {photo["key"] for photo in shown}
+    return [*shown, *(photo for photo in taken if photo["key"] not in there)]
 
 
 def of_buildings(
