@@ -30,9 +30,8 @@ def joined(
         return {name: placard.joined(looks, keys) for name, looks in boards.items()}
     some = [(name, tuple(looks)) for name, looks in boards.items()]
     parts = [some[at : at + AT_ONCE] for at in range(0, len(some), AT_ONCE)]
-    afresh = multiprocessing.get_context(
-        "spawn"
-    )  # we may have threads, which no fork has
+    # We may have threads, which no fork has.
+    afresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(several, afresh, _take, (keys,)) as pool:
         return dict(one for part in pool.map(_joined, parts) for one in part)
 
