@@ -48,7 +48,7 @@ def block(
 ) -> Block:
     """Build the cuboids of one block, ring by ring, in the order of its fronts.
 
-    `widths_m` are of streets, by casefolded name: one that cuts the block is so wide.
+    `widths_m` are of streets, by plain name: one that cuts the block is so wide.
 
     Raises:
         ValueError: if there are no fronts.

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Final
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import house_numbers, plain_name
 from nostalgin_core.catalogue.lengths import (
     count,
     floors,
@@ -102,7 +102,7 @@ def round_the_corner(entry: Entry, cells: Mapping[str, str]) -> list[Entry]:
     """
     street = " ".join(cells.get("other_street", "").split())
     address = cells.get("other_address", "")
-    same = street.casefold() == entry.street.casefold() or address == entry.address
+    same = plain_name(street) == plain_name(entry.street) or address == entry.address
     if not street or house_numbers(address) is None or same or entry.side is not None:
         return []
     return [

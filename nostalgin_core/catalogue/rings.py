@@ -32,6 +32,7 @@ from nostalgin_core.catalogue.entry import Entry, Named, from_file_name
 from nostalgin_core.catalogue.faces import faces
 from nostalgin_core.catalogue.lengths import assumed_width
 from nostalgin_core.catalogue.sides import sides_of, unwrapped, with_empty_sides
+from nostalgin_core.catalogue.spelt import spelt
 from nostalgin_core.catalogue.spots import Spot, folded, spots
 from nostalgin_core.catalogue.told import told
 from nostalgin_core.records import Front
@@ -98,9 +99,9 @@ def fronts(
     Where every row of a block gives its `side`, those are taken as they are.
     """
     blocks: dict[str, list[Entry]] = defaultdict(list)
-    for entry in entries:
+    written, warnings = spelt(entries)
+    for entry in written:
         blocks[entry.block].append(entry)
-    warnings: list[Doubt] = []
     given: dict[str, list[Front]] = {}
     inferred: dict[str, _Inferred] = {}
     for block, rows in blocks.items():

@@ -3,10 +3,9 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Final
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import house_numbers, plain_name
 from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.entry import Entry
 
@@ -140,10 +139,9 @@ def numbers_of(address: str) -> tuple[float, float] | None:
     return float(numbers[0]) + half, float(numbers[1]) + half
 
 
-@lru_cache(maxsize=4096)
 def folded(street: str) -> str:
     """Write a street's name as it is compared."""
-    return street.casefold().strip(" .")
+    return plain_name(street)
 
 
 def family(street: str) -> str:

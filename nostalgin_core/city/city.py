@@ -32,7 +32,7 @@ def places(
 ) -> dict[str, Move]:
     """Find where each block goes: given ones there, others by those that stand.
 
-    `widths` are streets' in metres by casefolded names; others follow from their names.
+    `widths` are streets' in metres by plain names; others follow from their names.
     Given blocks may overlap: they stand where they are told to.
     """
     made = _Placing(plots, widths or {})

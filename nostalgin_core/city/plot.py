@@ -8,7 +8,7 @@ import shapely
 from jaxtyping import Float
 from shapely.geometry.base import BaseGeometry
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import house_numbers, plain_name
 from nostalgin_core.arrays import Points
 from nostalgin_core.records import Front
 
@@ -118,7 +118,7 @@ def _borders(outline_m: Points, fronts: Sequence[Front]) -> list[Border]:
     sides: list[list[Front]] = [[] for _ in ends]
     for front in sorted(fronts, key=lambda front: front.rank):
         sides[front.side].append(front)
-    streets = [side[0].street.casefold() if side else "" for side in sides]
+    streets = [plain_name(side[0].street) if side else "" for side in sides]
     return [
         Border(
             street=streets[index],

@@ -16,11 +16,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from nostalgin_core.address import STREET_M, street_width
+from nostalgin_core.address import STREET_M, plain_name, street_width
 from nostalgin_core.city.plot import Border, Move, Plot, about, heading, length, middle
 
 NEAREST = 2  # of each parity, below a side and above it
-Widths = Mapping[str, float]  # of streets, by their casefolded names, in metres
+Widths = Mapping[str, float]  # of streets, by their plain names, in metres
 Pair = tuple[int, float, int, int, int, int]  # rank, numbers apart, blocks, borders
 
 
@@ -71,7 +71,7 @@ def ways(mine: Border, theirs: Border, widths: Widths) -> Iterator[Move]:
 
 def width_of(street: str, widths: Widths) -> float:
     """Tell a street's width in metres, as measured or by its name."""
-    return widths.get(street.casefold()) or street_width(street)
+    return widths.get(plain_name(street)) or street_width(street)
 
 
 def rise(border: Border) -> int:

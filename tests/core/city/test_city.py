@@ -182,16 +182,16 @@ def neighbourhood(count: int) -> list[Plot]:
         north, east = divmod(index, side)
         streets = {
             "west 10 street": f"{north} street",
-            "first avenue": f"{east + 1} avenue",
+            "1 avenue": f"{east + 1} avenue",
             "west 11 street": f"{north + 1} street",
-            "second avenue": f"{east} avenue",
+            "2 avenue": f"{east} avenue",
         }
         first = 100 * east + 1
         numbers = {
             "west 10 street": (first, first + 60),
-            "first avenue": (20 * north + 1, 20 * north + 13),
+            "1 avenue": (20 * north + 1, 20 * north + 13),
             "west 11 street": (first + 61, first + 1),
-            "second avenue": (20 * north + 14, 20 * north + 2),
+            "2 avenue": (20 * north + 14, 20 * north + 2),
         }
         borders = tuple(
             replace(
