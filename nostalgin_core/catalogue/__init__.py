@@ -14,6 +14,7 @@ from nostalgin_core.catalogue.catalogue import (
 )
 from nostalgin_core.catalogue.doubt import Doubt
 from nostalgin_core.catalogue.entry import Entry, from_file_name, inside, stem
+from nostalgin_core.catalogue.lengths import decimal
 from nostalgin_core.catalogue.naming import NAMELESS, Naming
 from nostalgin_core.catalogue.rings import fronts
 
@@ -23,6 +24,7 @@ __all__ = [
     "Doubt",
     "Entry",
     "Naming",
+    "decimal",
     "from_file_name",
     "fronts",
     "inside",

@@ -18,6 +18,7 @@ from pathlib import PurePosixPath
 from typing import Any, Final
 
 from nostalgin_core.catalogue.entry import (
+    KEYS,
     Entry,
     Named,
     from_cells,
@@ -69,6 +70,10 @@ UNUSED: Final = frozenset(  # the archive's columns that say nothing about place
         *("source_url", "source", "record_url", "url", "homepage"),
     }
 )
+HOUSES: Final = (
+    "it has no column for block, lot or bbl: each street is taken for a block, and "
+    "each house number of it for a lot"
+)
 FIRST_ROW: Final = 2
 QUOTED: Final = 80  # letters
 NAMED: Final = 8  # blocks of a list
@@ -101,6 +106,8 @@ def read(
         f"{name}: column {_shown(column)} is not known; it is kept"
         for column in unknown(every)
     ]
+    if KEYS.isdisjoint(columns) and "street" in columns:
+        warnings.append(f"{name}: {HOUSES}")
     entries, rejections = [], []
     for number, whole in enumerate(rows, first):
         odd = None in whole or "" in whole

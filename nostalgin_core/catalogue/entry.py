@@ -1,7 +1,8 @@
 """What one row of an archive's list says: an `Entry`, or why it makes no sense.
 
 Its cells come by field, whatever their columns are called (`catalogue`). Block and lot
-are read from their columns, the BBL, or the photo's own name. An alternative address on
+are read from their columns, the BBL, or the photo's own name; in a list without such
+columns a street is a block, and a house of it a lot. An alternative address on
 another street is a corner lot's second front: the lot's depth is its width there.
 """
 
@@ -21,6 +22,7 @@ from nostalgin_core.catalogue.lengths import (
 )
 
 Named = Callable[[str], tuple[str, str] | None]  # what a file's name tells
+KEYS: Final = frozenset(("block", "lot", "bbl"))  # fields that tell a lot
 TAX_PHOTO: Final = re.compile(r"(?:^|_)(\d{5})_(\d{4})([a-z]?)$")
 
 
@@ -136,6 +138,8 @@ def _lot(cells: Mapping[str, str], photo: str, named: Named) -> tuple[str, str]:
         block, lot = str(int(bbl[1])), str(int(bbl[2]))
     if not (block and lot):
         block, lot = named(photo) or (block, lot)
+    if not (block and lot) and KEYS.isdisjoint(cells):
+        block, lot = _house(cells, photo) or (block, lot)
     if not (block and lot):
         lacking = "block" if not block else "lot"
         raise ValueError(f"no {lacking}: fill in the cell, or delete the row")
@@ -144,6 +148,17 @@ def _lot(cells: Mapping[str, str], photo: str, named: Named) -> tuple[str, str]:
             f"nonsense block or lot: {block!r}, {lot!r}; write their numbers"
         )
     return block, lot
+
+
+def _house(cells: Mapping[str, str], photo: str) -> tuple[str, str] | None:
+    """Take a street for a block and a house for a lot, where a list knows of neither.
+
+    A house without a number is known by its photograph.
+    """
+    street = plain_name(cells.get("street", ""))
+    number = " ".join(cells.get("address", "").replace("/", "\u2044").split())
+    house = f"No. {number}" if number else stem(photo).strip()
+    return (street, house) if street and house else None
 
 
 def _trimmed(number: str) -> str:

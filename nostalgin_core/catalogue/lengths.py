@@ -16,6 +16,7 @@ NARROWEST_FT, WIDEST_FT = 8.0, 450.0  # of a front; beyond, a digit was lost
 MOST_SIDES: Final = 99  # of a ring, and rings of a block
 MOST_STOREYS: Final = 110  # the tallest house of the century
 LOT_FT: Final = 25.0  # the common lot of New York: 25 by 100 feet
+DECIMAL_COMMA: Final = re.compile(r"([+-]?\d{1,9}),(\d{1,2}|\d{4,9})")
 
 
 def feet(written: str) -> float | None:
@@ -100,17 +101,26 @@ def later_building(cells: Mapping[str, str]) -> str:
     return f"its measures are of a building of {built[0]}; they are left out"
 
 
+def decimal(written: str) -> str:
+    """Write a number with a decimal point where there is a comma: 7,6 is 7.6.
+
+    Of 1,234 nobody knows whether it is a thousand: it stays as it is written.
+    """
+    found = DECIMAL_COMMA.fullmatch(written.strip())
+    return f"{found[1]}.{found[2]}" if found else written
+
+
 def number(cells: Mapping[str, str], field: str) -> float | None:
     """Read a cell that holds a number of up to nine digits, or nothing.
 
     Raises:
         ValueError: "reason: remedy", if it holds something else.
     """
-    written = cells.get(field, "")
+    written = decimal(cells.get(field, ""))
     if not written:
         return None
     if not re.fullmatch(r"\d{1,9}(\.\d{1,9})?", written):
-        raise ValueError(f"nonsense {field}: {written[:40]!r}; write a number")
+        raise ValueError(f"nonsense {field}: {written[:40]!r}; write a number, as 7.62")
     return float(written)
 
 

@@ -22,7 +22,7 @@ from pipelines import bounded
 from pipelines.index import lists
 from pipelines.index.anchors import Asked
 from pipelines.index.images import Nothing, images
-from pipelines.index.index import Draft, Indexed, draft, put, replaceable
+from pipelines.index.index import Draft, Indexed, Question, draft, put, replaceable
 from pipelines.index.profiles import USUAL, built_in, profile
 from pipelines.index.web import is_web
 from pipelines.index.witnesses import Ask, Heard, Which
@@ -71,8 +71,8 @@ class Wish:
         paths = (getattr(self, name) for name in ("photos", *FILES))
         return not any("://" in path or is_web(path) for path in paths)
 
-    def asked(self) -> dict[str, Any]:
-        """Give it as `index` takes it.
+    def question(self) -> Question:
+        """Give what it tells beside photographs and list as `index` takes it.
 
         Raises:
             Nothing: if its profile makes no sense.
@@ -82,10 +82,9 @@ class Wish:
             for name in ("outlines", "places", "streets")
         }
         words = {n: getattr(self, n) for n in ("outline_key", "outline_crs", "place")}
-        told = {"credit": self.credit, "title": self.title, "blocks": self.blocks}
-        told |= {"encoding": self.encoding}
+        told = {n: getattr(self, n) for n in ("blocks", "credit", "title", "encoding")}
         archive = profile(self.profile)
-        return {**told, "places": Asked(**paths, **words), "archive": archive}
+        return Question(**told, places=Asked(**paths, **words), archive=archive)
 
 
 @dataclass(frozen=True)
@@ -167,8 +166,8 @@ def drafted(
     asker = None if ask is None else replace(ask, boards=told)
     # What changes from now on is seen the next time.
     both = (facts(wish, city), stamps(wish, city)) if wish.lasting else ("", "")
-    known = {**wish.asked(), "ask": asker, "tell": tell}
-    made = draft(wish.photos, wish.catalogue or None, city, **known)
+    where = (wish.photos, wish.catalogue or None, city)
+    made = draft(*where, wish.question(), ask=asker, tell=tell)
     return Drafted(made, key_of(both[0], both[1] if looked else ""))
 
 

@@ -5,6 +5,7 @@ A cell that makes no sense is an error that names its column and quotes what is 
 
 from typing import Any, Final
 
+from nostalgin_core.catalogue import decimal
 from nostalgin_core.records import Front
 
 ASSUMED_WIDTH_M: Final = 7.62  # 25 feet, the common lot of New York
@@ -90,7 +91,7 @@ def number(cells: dict[str, Any], name: str) -> float | None:
     if not written:
         return None
     try:
-        value = float(written)
+        value = float(decimal(written))
     except ValueError as problem:
         raise ValueError(f"{name} is {shown(cells, name)}, no number") from problem
     if not 0 <= value < float("inf"):

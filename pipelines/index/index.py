@@ -14,7 +14,7 @@ from pipelines.index import lists, manifest, readings, warned
 from pipelines.index.anchors import Asked, taken
 from pipelines.index.columns import cells_of
 from pipelines.index.images import Nothing, images, spelt_out
-from pipelines.index.lots import Lots, from_list, from_names, lots_of
+from pipelines.index.lots import Lots, absent, from_list, from_names, lots_of
 from pipelines.index.profiles import PROFILE, USUAL, Profile, profile
 from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned
@@ -68,39 +68,43 @@ class Draft:
     indexed: Indexed
 
 
+@dataclass(frozen=True)
+class Question:
+    """What `index` is told beside the photographs and their list."""
+
+    blocks: Sequence[str] = ()  # these alone; none: all
+    credit: str = ""
+    title: str = ""  # "": the city folder's name is shown
+    encoding: str = ""  # of the list; "": it is found out
+    places: Asked | None = None  # None: what was told of places stays
+    archive: Profile | None = None  # of names and boards; None: New York's
+
+
 def index(
     photos: str | Path,
     listed: str | Path | None,
     city: str,
+    question: Question = Question(),
     *,
-    blocks: Sequence[str] = (),
-    credit: str = "",
-    title: str = "",
     force: bool = False,
-    places: Asked | None = None,
     ask: Ask | None = None,
-    archive: Profile | None = None,
-    encoding: str = "",
     tell: lists.Tell = lists.silent,
 ) -> Indexed:
-    """Write a city folder's manifest; without a `title` its folder's name is shown.
+    """Write a city folder's manifest.
 
-    `photos` is a folder, or a IIIF source, which is brought into the city folder. What
-    names and boards are like an `archive` says, else New York's does. Without a
-    catalogue the names tell block and lot; where they don't, boards, if there is
+    `photos` is a folder, or a IIIF source, which is brought into the city folder.
+    Without a list the names tell block and lot; where they don't, boards, if there is
     somebody to `ask`; else the photos of a folder stand in one row, as they are named.
     `readings.parquet` tells what each of these says, and where they contradict each
     other. A manifest that people have mended is replaced by `force` alone, and a copy
-    of it is kept. What was told of `places` stays, unless this one is told anew.
+    of it is kept.
 
     Raises:
         Nothing: if there is no photo, no row that makes sense, or mended ones to lose.
     """
     store = Store(city)
-    mended = replaceable(store, credit, force=force)
-    named = {"credit": credit, "title": title, "places": places, "encoding": encoding}
-    asked = {"blocks": blocks, "ask": ask, "archive": archive, "tell": tell}
-    return put(store, draft(photos, listed, city, **named, **asked), mended)
+    mended = replaceable(store, question.credit, force=force)
+    return put(store, draft(photos, listed, city, question, ask=ask, tell=tell), mended)
 
 
 @seldom()
@@ -108,14 +112,9 @@ def draft(
     photos: str | Path,
     listed: str | Path | None,
     city: str,
+    question: Question,
     *,
-    blocks: Sequence[str] = (),
-    credit: str = "",
-    title: str = "",
-    places: Asked | None = None,
     ask: Ask | None = None,
-    archive: Profile | None = None,
-    encoding: str = "",
     tell: lists.Tell = lists.silent,
 ) -> Draft:
     """Make a manifest as `index` does, and write none of it.
@@ -123,31 +122,36 @@ def draft(
     Raises:
         Nothing: if there is no photo, or no row that makes sense.
     """
-    own = archive or profile(USUAL)
+    own, blocks = question.archive or profile(USUAL), question.blocks
     ask = with_boards(ask, own)
-    read_as = {"naming": own.naming, "encoding": encoding}
+    read_as = {"naming": own.naming, "encoding": question.encoding}
     folder, given = lists.opened(photos, listed, city, **read_as, tell=tell)
     names, unnamed = images(folder, city)
     root = os.path.abspath(folder)  # noqa: PTH100 - a link stays a link
     heard, read = first_heard(given, names, Path(root), ask, own)
-    beside, whole = told_by(given, read.entries), given is not None
+    beside, whole = told_by(given, read.entries), given.name if given else ""
     del given  # its rows are held no longer
     lots = lots_of(read, blocks, Path(listed or photos), own)
-    files, placeless = taken(places or Asked(), lots.blocks)
+    files, placeless = taken(question.places or Asked(), lots.blocks)
     shown, strangers = catalogue.matched(lots.entries, names, named=own.naming.told)
+    lost = absent(lots.entries, shown, whole) if whole and not blocks else []
     if whole:
         heard = with_list(names, shown, lots.entries, ask, root, own=own)
         shown, strangers = placed(heard, shown, strangers, lots.entries)
     rows, homeless = paired(names, shown, lots.fronts, every=not blocks)
-    cells = cells_of(rows, shown, beside, lots.entries, root=root, credit=credit)
-    encoded = manifest.encoded(cells, title=cleaned(title), kept=None)
+    told = {"root": root, "credit": question.credit}
+    cells = cells_of(rows, shown, beside, lots.entries, **told)
+    encoded = manifest.encoded(cells, title=cleaned(question.title), kept=None)
     unlisted = () if blocks else strangers
     wrong = (*unnamed, *read.rejections, *lots.crowded, *unlisted)
-    said, heard_of = (*lots.said, *beside.warnings), (*placeless, *heard.doubts())
+    said, heard_of = (
+        (*lots.said, *lost, *beside.warnings),
+        (*placeless, *heard.doubts()),
+    )
     doubts = (*map(Doubt, said), *lots.doubts, *map(Doubt, heard_of))
-    told = {"rejections": wrong, "doubts": doubts}
     files[PROFILE] = own.toml
-    return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **told))
+    wanting = {"rejections": wrong, "doubts": doubts}
+    return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **wanting))
 
 
 @seldom()

@@ -5,15 +5,19 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Catalogue, Doubt, Entry, Naming
 from nostalgin_core.records import Front, Rejection
+from pipelines import plural
 from pipelines.index import lists, manifest
-from pipelines.index.cells import MOST_FRONTS
+from pipelines.index.cells import MOST_FRONTS, quoted
 from pipelines.index.images import Nothing
 from pipelines.index.names import row_name
 from pipelines.index.profiles import Profile
+
+MOST_ABSENT: Final = 6  # that are named
 
 
 @dataclass(frozen=True)
@@ -81,6 +85,21 @@ def sparse(entries: Sequence[Entry]) -> tuple[list[Entry], list[Rejection]]:
     ]
     kept = [one for one in entries if len(lots[one.block]) <= MOST_FRONTS]
     return kept, crowded
+
+
+def absent(
+    entries: Sequence[Entry], shown: Mapping[str, Sequence[Entry]], name: str
+) -> list[str]:
+    """Tell in one line which photographs a list names that are not there."""
+    found = {entry.row for own in shown.values() for entry in own}
+    named = {one.row: one for one in entries if one.photo}  # a corner's row once
+    lost = [one for row, one in sorted(named.items()) if row not in found]
+    if not lost:
+        return []
+    some = ", ".join(f"row {one.row} {quoted(one.photo)}" for one in lost[:MOST_ABSENT])
+    more = " ..." if len(lost) > MOST_ABSENT else ""
+    many = plural.of(len(lost), "photograph")
+    return [f"{name}: it names {many} not in the folder: {some}{more}"]
 
 
 def about(warnings: Sequence[str], rows: set[int]) -> list[str]:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from nostalgin_core.address import plain_name
+from nostalgin_core.catalogue import decimal
 from nostalgin_core.city import Anchor
 from pipelines.index import comma
 from pipelines.index.cells import quoted, text
@@ -149,7 +150,7 @@ def value(row: comma.Cells, name: str) -> float:
     """Read a finite number of either sign."""
     written = text(row, name) if row.get(name) != 0 else "0"
     try:
-        number = float(written)
+        number = float(decimal(written))
     except ValueError as problem:
         words = quoted(written) if written else "empty"
         raise ValueError(f"has a {name} that is {words}, no number") from problem

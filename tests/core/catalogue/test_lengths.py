@@ -41,3 +41,14 @@ def test_an_assumed_width_grows_with_the_house_numbers_it_takes() -> None:
     one, three = lengths.assumed_width("111"), lengths.assumed_width("108-112")
     assert one == pytest.approx(7.62)
     assert one < three < 3 * one + 0.1
+
+
+@pytest.mark.parametrize("written", ["7.6", "18.25", "-73.98765", "120", "0.5"])
+def test_a_decimal_comma_is_a_point(written: str) -> None:
+    assert lengths.decimal(written.replace(".", ",")) == written
+    assert lengths.decimal(written) == written
+
+
+@pytest.mark.parametrize("written", ["1,234", "1,2,3", "7,", ",5", "12,14 rear", ""])
+def test_a_comma_that_may_be_another_is_left(written: str) -> None:
+    assert lengths.decimal(written) == written

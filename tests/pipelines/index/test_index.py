@@ -7,7 +7,7 @@ import pytest
 
 from pipelines.index import manifest
 from pipelines.index.images import Nothing
-from pipelines.index.index import Indexed, index
+from pipelines.index.index import Indexed, Question, index
 from pipelines.index.profiles import USUAL, profile
 from pipelines.index.roots import located
 from pipelines.store.store import Store
@@ -32,12 +32,15 @@ def photos(tmp_path: Path) -> Path:
     return folder
 
 
-def indexed(photos: Path, text: str | None, **options: object) -> Indexed:
+def indexed(
+    photos: Path, text: str | None, question: Question | None = None
+) -> Indexed:
     listed = photos.parent / "list.csv"
     if text is not None:
         listed.write_text(text, newline="")
     city = str(photos.parent / "city")
-    return index(photos, listed if text is not None else None, city, **options)  # type: ignore[arg-type]
+    asked = question or Question()
+    return index(photos, listed if text is not None else None, city, asked)
 
 
 def pairs(photos: Path) -> list[tuple[str, str | None]]:
@@ -63,7 +66,7 @@ def test_what_index_writes_build_reads_without_complaint(photos: Path) -> None:
 
 
 def test_a_block_can_be_taken_alone(photos: Path) -> None:
-    made = indexed(photos, CATALOGUE, blocks=["994"])
+    made = indexed(photos, CATALOGUE, Question(blocks=["994"]))
     assert pairs(photos) == [("b/994_1.jpg", "1")]
     assert (made.without_front, made.rejections) == ((), ())
 
@@ -78,7 +81,7 @@ def test_indexing_twice_writes_the_same_bytes(photos: Path) -> None:
 
 @pytest.mark.parametrize("title", ["<b>x</b>\n\0", "x" * 10_000, "\udcff"])
 def test_a_hostile_title_becomes_one_short_line(photos: Path, title: str) -> None:
-    indexed(photos, CATALOGUE, title=title)
+    indexed(photos, CATALOGUE, Question(title=title))
     kept = manifest.read(Store(str(photos.parent / "city"))).title
     assert len(kept) <= 100
     assert kept == "" or kept.isprintable()
@@ -315,6 +318,33 @@ def test_what_is_indexed_of_the_largest_block_can_be_built(photos: Path) -> None
     assert (made.fronts, found.rejections) == (9_999, ())
 
 
+def test_a_list_of_streets_and_houses_needs_no_blocks_and_lots(photos: Path) -> None:
+    text = (
+        "photo;street;house_no;width_m\r\nb/993_1.jpg;Elm St.;12 1/2;7,5\r\n"
+        "b/994_1.jpg;Elm Street;14-16;\r\nb/993_2.jpg;ELM STREET;13;8\r\n"
+    )
+    made = indexed(photos, text)
+    assert (made.photos, made.fronts, made.blocks) == (3, 3, 1)
+    assert not made.without_front
+    assert any("each street is taken for a block" in told for told in made.warnings)
+    read = manifest.read(Store(str(photos.parent / "city"))).rows
+    fronts = {row.photo: row.front for row in read if row.front is not None}
+    assert {front.street for front in fronts.values()} == {"Elm Street"}
+    assert fronts["b/993_1.jpg"].width_m == pytest.approx(7.5)
+    assert fronts["b/993_1.jpg"].ring == fronts["b/994_1.jpg"].ring  # even, and across
+    assert fronts["b/993_1.jpg"].ring != fronts["b/993_2.jpg"].ring  # the street, odd
+
+
+def test_a_photograph_that_is_not_there_is_named_in_one_line(photos: Path) -> None:
+    text = CATALOGUE.replace(",993,3,", "b/995_9.jpg,993,3,") + "gone.jpg,993,4,,,,\n"
+    told = [one for one in indexed(photos, text).warnings if "not in the folder" in one]
+    assert len(told) == 1
+    assert "2 photographs" in told[0]
+    assert "row 4 'b/995_9.jpg', row 6 'gone.jpg'" in told[0]
+    quiet = indexed(photos, CATALOGUE).warnings
+    assert not any("not in the folder" in one for one in quiet)
+
+
 def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:
     with pytest.raises(Nothing, match=r"gone\.csv"):
         index(photos, photos / "gone.csv", str(photos.parent / "city"))
@@ -322,7 +352,7 @@ def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:
 
 def test_a_block_that_is_not_there_is_named(photos: Path) -> None:
     with pytest.raises(Nothing, match="1000"):
-        indexed(photos, CATALOGUE, blocks=["1000"])
+        indexed(photos, CATALOGUE, Question(blocks=["1000"]))
 
 
 def test_an_empty_line_is_counted_and_else_ignored(photos: Path) -> None:
@@ -358,7 +388,8 @@ def test_block_993_of_the_archive_has_its_twenty_photos_on_two_rings(
 ) -> None:
     folder = DATA / "taxphotos"
     city = str(tmp_path / "city")
-    made = index(folder / "photos", folder / "catalogue.csv", city, blocks=["993"])
+    alone = Question(blocks=["993"])
+    made = index(folder / "photos", folder / "catalogue.csv", city, alone)
     assert made.photos == 20
     rows = manifest.read(Store(city)).rows
     assert {row.front.ring for row in rows if row.front} == {0, 1}

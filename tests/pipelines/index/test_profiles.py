@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from nostalgin_core.catalogue import from_file_name
 from nostalgin_core.placard import Look
 from pipelines.index import Ask, Heard, Nothing
-from pipelines.index.index import Indexed, index
+from pipelines.index.index import Indexed, Question, index
 from pipelines.index.manifest import read
 from pipelines.index.profiles import USUAL, built_in, profile
 from pipelines.store import Store
@@ -100,7 +100,7 @@ def indexed(
     for name in names:
         (folder / name).write_bytes(b"no picture is read here")
     city = str(tmp_path / "city")
-    return index(folder, None, city, ask=ask, archive=profile(asked))
+    return index(folder, None, city, Question(archive=profile(asked)), ask=ask)
 
 
 def lots(tmp_path: Path) -> list[tuple[str, str]]:
