@@ -23,7 +23,7 @@ from pipelines.reprocess.waiting import told_of_both
 from pipelines.store import Store, held, key_of, runs
 from pipelines.store.refuse import drop_run
 
-OF_FILES: Final = ("new", "changed", "removed")
+OF_FILES: Final = ("new", "changed", "removed", "moved")
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from pipelines.reprocess.sides import Groups, Side, Widths
 from pipelines.reprocess.tries import tries
 from pipelines.reprocess.verdicts import Verdicts, verdicts
 
-CAUSES: Final = ("new", "changed", "removed", "missing", "version")  # of photographs
+CAUSES: Final = ("new", "changed", "removed", "missing", "version", "moved")
 NONE: Final = np.zeros(0, np.uint64)
 
 
@@ -121,9 +121,15 @@ class Found:
         self.since_ns.append(one.since_ns)
 
     def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Give names, causes and times, each name once with its first cause."""
-        names, first = np.unique(np.array(self.names, np.uint64), return_index=True)
-        causes = np.array(self.causes, np.uint8)[first]
+        """Give names, causes and times, each name once with its first cause.
+
+        What is gone from one folder and new in another was moved.
+        """
+        every, told = np.array(self.names, np.uint64), np.array(self.causes, np.uint8)
+        names, first = np.unique(every, return_index=True)
+        gone, come = (every[told == CAUSES.index(one)] for one in ("removed", "new"))
+        causes = told[first]
+        causes[np.isin(names, np.intersect1d(gone, come))] = CAUSES.index("moved")
         return names, causes, np.array(self.since_ns, np.int64)[first]
 
 

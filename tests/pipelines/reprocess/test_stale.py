@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from pipelines.index.index import index
 from pipelines.index.manifest import Unusable
 from pipelines.reprocess import Plan
 from pipelines.store import packing, versions
@@ -54,6 +55,11 @@ def a_photo_goes(city: Path) -> None:
     changing.remove(city, "5_2a.png")
 
 
+def the_folder_moves(city: Path) -> None:
+    (city.parent / "photos").rename(city.parent / "pictures")
+    index(city.parent / "pictures", city.parent / "list.csv", str(city))
+
+
 def a_file_goes(city: Path) -> None:
     (city.parent / "photos/5_1.png").unlink()
 
@@ -91,6 +97,7 @@ def a_model_goes(city: Path) -> None:
         (a_photo_comes, {"new": 1}, 1),
         (a_photo_goes, {"removed": 1}, 1),
         (a_file_goes, {"removed": 1}, 1),
+        (the_folder_moves, {"moved": 4}, 2),
         (people_correct_a_height, {}, 1),
         (people_mend_the_manifest, {}, 1),
         (an_artifact_goes, {"missing": 1}, 1),
