@@ -6,6 +6,7 @@ columns a street is a block, and a house of it a lot. An alternative address on
 another street is a corner lot's second front: the lot's depth is its width there.
 """
 
+import hashlib
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -23,6 +24,10 @@ from nostalgin_core.catalogue.lengths import (
 
 Named = Callable[[str], tuple[str, str] | None]  # what a file's name tells
 KEYS: Final = frozenset(("block", "lot", "bbl"))  # fields that tell a lot
+LONGEST: Final = 64  # letters of block and lot
+HARMLESS: Final = str.maketrans(
+    {"/": "\u2044", "\\": "\u2044", "-": "\u2013", "\0": " "}
+)
 TAX_PHOTO: Final = re.compile(r"(?:^|_)(\d{5})_(\d{4})([a-z]?)$")
 
 
@@ -143,7 +148,7 @@ def _lot(cells: Mapping[str, str], photo: str, named: Named) -> tuple[str, str]:
     if not (block and lot):
         lacking = "block" if not block else "lot"
         raise ValueError(f"no {lacking}: fill in the cell, or delete the row")
-    if any(mark in block + lot for mark in "/\\\0") or len(block + lot) > 64:
+    if any(mark in block + lot for mark in "/\\\0") or len(block + lot) > LONGEST:
         raise ValueError(
             f"nonsense block or lot: {block!r}, {lot!r}; write their numbers"
         )
@@ -153,11 +158,15 @@ def _lot(cells: Mapping[str, str], photo: str, named: Named) -> tuple[str, str]:
 def _house(cells: Mapping[str, str], photo: str) -> tuple[str, str] | None:
     """Take a street for a block and a house for a lot, where a list knows of neither.
 
-    A house without a number is known by its photograph.
+    A house without a number is known by its photograph. What parts a key, or a path,
+    is written so that it parts none.
     """
-    street = plain_name(cells.get("street", ""))
-    number = " ".join(cells.get("address", "").replace("/", "\u2044").split())
-    house = f"No. {number}" if number else stem(photo).strip()
+    written = cells.get("address", "").translate(HARMLESS)
+    number = " ".join(written.split())
+    street = plain_name(cells.get("street", "")).translate(HARMLESS)
+    house = f"No. {number}" if number else stem(photo).strip().translate(HARMLESS)
+    if len(street + house) > LONGEST:
+        house = hashlib.sha256(house.encode()).hexdigest()[:12]
     return (street, house) if street and house else None
 
 

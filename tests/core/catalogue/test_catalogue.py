@@ -166,3 +166,27 @@ def test_an_alternative_address_is_a_corner_lot_s_second_front() -> None:
 def test_another_name_of_the_same_street_is_no_second_front() -> None:
     renamed = CORNER | {"Alternative Building Number": "561-565"}
     assert len(catalogue.read([ARCHIVE | renamed]).entries) == 1
+
+
+@pytest.mark.parametrize(
+    ("street", "address", "photo"),
+    [
+        ("Elm St.", "14-16", "a.jpg"),
+        ("Broadway / Fifth Ave", "12 1/2", "b.jpg"),
+        ("Rue de l'Abb\u00e9-Gr\u00e9goire", "", "x" * 80 + ".jpg"),
+        ("../etc\\passwd", "../../1", "c.jpg"),
+        ("=cmd|calc", "-1+1", "d.jpg"),
+    ],
+)
+def test_a_house_without_block_and_lot_has_a_key_that_corrections_can_name(
+    street: str, address: str, photo: str
+) -> None:
+    row = {"photo": photo, "street": street, "address": address}
+    made = catalogue.read([row, row | {"street": street.upper()}])
+    assert not made.rejections
+    keys = {(one.block, one.lot) for one in made.entries}
+    assert len(keys) == 1
+    (block, lot), *_ = keys
+    assert f"{block}-{lot}".rpartition("-") == (block, "-", lot)
+    assert not set(block + lot) & set("/\\\0")
+    assert len(block + lot) <= 64
