@@ -4,6 +4,7 @@
 # make fuzz   thousands of damaged bytes for every reader; some minutes
 # make audit  known holes in what this is built on; it asks a service elsewhere
 # make prism  Beam's portable runner, built by Go from its module proxy; two minutes
+# make gcs    a server of Google's bucket protocol, built likewise, for tests of gs://
 # make airflow  Airflow in an environment of its own, for the test of its DAG
 # make deploy  what deploy/ tells clusters, asked of schemas and linters; a minute, and Go
 # make bench  benchmarks, as ratios against named baselines
@@ -22,14 +23,15 @@ GO ?= go
 # As pyproject.toml has it.
 BEAM := 2.77.0
 AIRFLOW := 3.1.3
+GCS := 1.56.1
 
-.PHONY: demo test check fuzz audit prism airflow deploy bench viewer clean
+.PHONY: demo test check fuzz audit prism gcs airflow deploy bench viewer clean
 
 demo: $(VENV)/.run $(VIEWER)
 	$(BIN)/nostalgin demo -o $(CITY)
 
 test: $(VENV)/.test $(VIEWER) chromium
-	@command -v $(GO) >/dev/null && $(MAKE) prism || echo "no Go: Prism's test is skipped"
+	@command -v $(GO) >/dev/null && $(MAKE) prism gcs || echo "no Go: Prism's and gs://'s tests are skipped"
 	$(BIN)/pytest -n 2 --dist worksteal
 	cd viewer && npm test
 
@@ -49,6 +51,11 @@ prism: $(BIN)/prism
 
 $(BIN)/prism: | $(UV)
 	GOBIN=$(CURDIR)/$(BIN) $(GO) install github.com/apache/beam/sdks/v2/go/cmd/prism@v$(BEAM)
+
+gcs: $(BIN)/fake-gcs-server
+
+$(BIN)/fake-gcs-server: | $(UV)
+	GOBIN=$(CURDIR)/$(BIN) $(GO) install github.com/fsouza/fake-gcs-server@v$(GCS)
 
 airflow: .tools/airflow/bin/airflow
 

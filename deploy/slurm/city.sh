@@ -4,8 +4,8 @@
 #   CITY=/shared/city deploy/slurm/city.sh 16
 #
 # CITY is a folder that all nodes mount, or a bucket (s3://archive/city); its manifest is
-# there (`nostalgin index`). Shards that fail or are killed are run again by Slurm, and
-# what they kept is not made twice; the last run makes what is still missing.
+# there (`nostalgin index`). A shard whose node fails is run again by Slurm; one that is
+# killed is not, and the last run makes what it left. What was kept is not made twice.
 set -eu
 shards=${1:?how many shards}
 : "${CITY:?the city folder}"

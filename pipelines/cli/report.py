@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import Quiet, Voice, errors, fail, unwritable
+from pipelines.console import Quiet, Voice, errors, fail, unreadable, unwritable
 
 EXAMPLES: Final = """
 Examples:
@@ -40,7 +40,7 @@ def report_command(
     except (report.NoRun, Damaged) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
-        raise fail(f"{city}: {problem.strerror}; name a city folder") from problem
+        raise unreadable(city, problem) from problem
     try:
         target.write_text(text, encoding="utf-8", errors="replace")
     except OSError as problem:

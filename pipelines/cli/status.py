@@ -11,7 +11,7 @@ import typer
 from pipelines import plural
 from pipelines.cli.launch import City, JsonLines, ModelsFolder
 from pipelines.cli.reprocess import lines, looked
-from pipelines.console import Quiet, Voice, errors, fail
+from pipelines.console import Quiet, Voice, errors, unreadable
 
 if TYPE_CHECKING:
     from pipelines.report import Past
@@ -50,7 +50,7 @@ def status_command(
         pasts, at_work = report.history(store), busy(store)
         records = schedule.recorded(store)
     except OSError as problem:
-        raise fail(f"{city}: {problem.strerror}; name a city folder") from problem
+        raise unreadable(city, problem) from problem
     voice = Voice(errors, machine=json_lines, quiet=quiet)
     now = schedule.state(records, datetime.now(UTC))
     if json_lines:

@@ -5,7 +5,7 @@ from typing import Annotated, Final
 
 import typer
 
-from pipelines.console import Quiet, fail
+from pipelines.console import Quiet, fail, unreadable
 
 EXAMPLES: Final = """
 Examples:
@@ -34,7 +34,7 @@ def view_command(
     except NoSiteError as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
-        raise fail(f"{city}: {problem.strerror}; name a city folder") from problem
+        raise unreadable(city, problem) from problem
     try:
         view(site, port=port, browser=browser, announced=not quiet)
     except OSError as problem:

@@ -10,6 +10,7 @@ from pipelines.console.failure import (
     errors,
     fail,
     opened_streams,
+    unreadable,
     unwritable,
 )
 from pipelines.console.hush import hushed
@@ -30,5 +31,6 @@ __all__ = [
     "laid_out",
     "opened_streams",
     "summed",
+    "unreadable",
     "unwritable",
 ]

@@ -79,3 +79,10 @@ def unwritable(folder: str | Path, problem: OSError) -> typer.Exit:
         why = problem.strerror or str(problem)
         remedy = "name a folder that can be written to"
     return fail(f"{folder}: {why}; {remedy}")
+
+
+def unreadable(city: str | Path, problem: OSError) -> typer.Exit:
+    """Say that a city folder could not be read, and the remedy if words lack one."""
+    why = problem.strerror or str(problem)
+    told = problem.errno == errno.EIO  # by whoever raised it
+    return fail(f"{city}: {why}" if told else f"{city}: {why}; name a city folder")

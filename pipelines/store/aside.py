@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from nostalgin_core.records import Rejection
-from pipelines.store.store import ARTIFACTS, Store, key_of
+from pipelines.store.stable import key_of
+from pipelines.store.store import ARTIFACTS, Store
 from pipelines.store.versions import Versions
 
 

@@ -1,17 +1,26 @@
 """Where a store lies: file systems, and names that they take."""
 
+import contextlib
 import errno
 import functools
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+import pyarrow as pa
 import pyarrow.fs as pafs
 
 SECRETIVE: Final = (
     "Credentials in the URI, which logs and tables would show: give them by the "
     "environment, or by a file of the cloud's own tools"
 )
+STRANGER: Final = (
+    "give credentials by GOOGLE_APPLICATION_CREDENTIALS, or by "
+    "`gcloud auth application-default login`"
+)
+GOOGLE: Final = "google::cloud::Status"
+FIRST_S: Final = 5  # for Google's servers to answer at first; later Arrow's 900
 NOWHERE: Final = frozenset(
     (errno.ENOENT, errno.ENOTDIR, errno.ENAMETOOLONG, errno.ELOOP, errno.EILSEQ)
 )
@@ -49,7 +58,35 @@ def reached(where: str, process: int) -> tuple[pafs.FileSystem, str]:
     if where.startswith("s3://"):  # what fits into one request is written by one
         where += f"{'&' if '?' in where else '?'}allow_delayed_open=true"
     system, path = pafs.FileSystem.from_uri(where)
+    if where.startswith("gs://") and "retry_limit_seconds" not in where:
+        soon = f"{where}{'&' if '?' in where else '?'}retry_limit_seconds={FIRST_S}"
+        with worded():
+            pafs.FileSystem.from_uri(soon)[0].get_file_info(path)
     return system, path.rstrip("/")
+
+
+@contextlib.contextmanager
+def worded() -> Iterator[None]:
+    """Tell what Google's client says of no file as file systems do.
+
+    Raises:
+        OSError: with number and words, where Arrow has neither.
+    """
+    try:
+        yield
+    except (OSError, pa.ArrowException) as problem:
+        named = isinstance(problem, OSError) and problem.errno is not None
+        if named or GOOGLE not in str(problem):
+            raise
+        raise OSError(errno.EIO, in_short(str(problem))) from problem
+
+
+def in_short(said: str) -> str:
+    """Shorten what Google's client says to what went wrong, and add the remedy."""
+    why = said.removeprefix("Unknown error: ").partition(" error_info=")[0]
+    why = why.rpartition("error message was: ")[2].rpartition("last message of ")[2]
+    remedy = STRANGER if "credential" in said or "OAuth2" in said else "try again"
+    return f"{why.strip().rstrip('.')}; {remedy}"
 
 
 def secretive(where: str) -> bool:

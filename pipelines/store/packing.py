@@ -15,7 +15,8 @@ import pyarrow as pa
 from pipelines.store import seal
 from pipelines.store.seal import Damaged
 from pipelines.store.shelf import PACKS, Entry, packed
-from pipelines.store.store import REJECTED, VERDICT, Store, key_of, remembered
+from pipelines.store.stable import key_of
+from pipelines.store.store import REJECTED, VERDICT, Store, remembered
 
 PACK_BYTES: Final = 32_000_000  # a worker holds a few of these
 PACK_COUNT: Final = 4096

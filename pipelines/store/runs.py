@@ -25,7 +25,8 @@ from nostalgin_core.records import Rejection, Seen, Standpoint
 from nostalgin_core.views import Claim
 from pipelines.models import READER
 from pipelines.store import tables
-from pipelines.store.store import Store, key_of
+from pipelines.store.stable import key_of
+from pipelines.store.store import Store
 from pipelines.store.versions import Versions
 
 

@@ -7,6 +7,7 @@ with every process.
 
 import dataclasses
 import functools
+import hashlib
 import inspect
 import re
 from typing import Any, Final
@@ -14,6 +15,12 @@ from typing import Any, Final
 import numpy as np
 
 EXACT: Final = (type(None), bool, int, float, str, bytes)
+
+
+def key_of(*parts: str) -> str:
+    """Hash parts into a key; ("ab", "c") and ("a", "bc") differ."""
+    joined = "\0".join(parts).encode()
+    return hashlib.sha256(joined).hexdigest()[:40]
 
 
 def stable(value: Any) -> str:  # noqa: PLR0911 - one for each kind

@@ -12,7 +12,6 @@ damaged later is found out when it is read (`seal`). A rejection is an artifact 
 import contextlib
 import errno
 import functools
-import hashlib
 import os
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -26,8 +25,8 @@ import pyarrow.parquet as pq
 
 from nostalgin_core.records import Rejection
 from pipelines import bounded
-from pipelines.store import seal, tables
-from pipelines.store.disk import SECRETIVE, absent, durable, reached, secretive, textual
+from pipelines.store import disk, seal, tables
+from pipelines.store.disk import worded
 from pipelines.store.seal import Damaged
 from pipelines.store.shelf import ARTIFACT, Place, Shelf, shelf
 
@@ -44,12 +43,6 @@ class Unstored(BaseException):
     """
 
 
-def key_of(*parts: str) -> str:
-    """Hash parts into a key; ("ab", "c") and ("a", "bc") differ."""
-    joined = "\0".join(parts).encode()
-    return hashlib.sha256(joined).hexdigest()[:40]
-
-
 @dataclass(frozen=True)
 class Store:
     """A city folder, on this machine or wherever Arrow's file systems reach."""
@@ -63,24 +56,26 @@ class Store:
         Raises:
             OSError: if the URI names none, or is no text.
         """
-        if not textual(self.root):
+        if not disk.textual(self.root):
             shown = os.fsencode(self.root).decode(errors="backslashreplace")
             raise OSError(errno.EILSEQ, f"{shown} is not UTF-8", self.root)
-        if secretive(self.root):
+        if disk.secretive(self.root):
             scheme = self.root.partition("://")[0]
-            raise OSError(errno.EINVAL, SECRETIVE, f"{scheme}://")
+            raise OSError(errno.EINVAL, disk.SECRETIVE, f"{scheme}://")
         local = "://" not in self.root
         where = os.path.abspath(self.root) if local else self.root  # noqa: PTH100
         try:
-            return reached(where, os.getpid())
+            return disk.reached(where, os.getpid())
         except pa.ArrowInvalid as problem:
             raise OSError(errno.EINVAL, str(problem), self.root) from problem
 
+    @worded()
     def exists(self, name: str) -> bool:
         """Tell whether a file is there."""
         system, root = self._open()
         return system.get_file_info(f"{root}/{name}").type == pafs.FileType.File
 
+    @worded()
     def stamps(self, names: Sequence[str]) -> list[tuple[int, int] | None]:
         """Tell the sizes of files and when they were changed, in nanoseconds.
 
@@ -92,12 +87,13 @@ class Store:
             told = system.get_file_info(paths)
         except (OSError, ValueError) as problem:  # one spoils all: ask for each
             if len(names) == 1:
-                if absent(problem):
+                if disk.absent(problem):
                     return [None]
                 raise
             return [stamp for name in names for stamp in self.stamps([name])]
         return [(one.size, one.mtime_ns) if one.is_file else None for one in told]
 
+    @worded()
     def read_bytes(self, name: str, most: int = bounded.PHOTO_BYTES) -> bytes:
         """Read a whole file of at most so many bytes.
 
@@ -112,6 +108,7 @@ class Store:
             bounded.fits(file.size(), most, f"{self.root}/{name}")
             return file.read()
 
+    @worded()
     def write_bytes(self, name: str, data: bytes) -> None:
         """Write a file so that it is there wholly or not at all.
 
@@ -127,13 +124,14 @@ class Store:
         system.create_dir(target.rpartition("/")[0], recursive=True)
         partial = f"{target}.{uuid.uuid4().hex[:8]}.partial"
         try:
-            durable(Path(partial), data)
+            disk.durable(Path(partial), data)
             system.move(partial, target)
         except OSError:
             with contextlib.suppress(OSError):  # a full disk need not keep a torn file
                 system.delete_file(partial)
             raise
 
+    @worded()
     def names(self, folder: str) -> list[str]:
         """Name the files in a folder; none where there is no folder."""
         system, root = self._open()
@@ -157,12 +155,14 @@ class Store:
             repack(self, known[1], place.pack, without={known[2]})
             remembered.cache_clear()
 
+    @worded()
     def remove(self, name: str) -> None:
         """Remove a file if it is there."""
         system, root = self._open()
         with contextlib.suppress(FileNotFoundError):
             system.delete_file(f"{root}/{name}")
 
+    @worded()
     def listed(self, folder: str) -> Shelf:
         """List the artifacts of a stage's version."""
         return shelf(*self._open(), folder)
@@ -172,13 +172,12 @@ class Store:
         if known is None or not (anew or self.era):
             return None
         folder, key = known.groups()
-        if anew:
-            there = self.listed(folder)
-        else:
-            there = remembered(self.root, folder, self.era, os.getpid())
+        near = self.root, folder, self.era, os.getpid()
+        there = self.listed(folder) if anew else remembered(*near)
         place = there.find(key)
         return None if place is None else (folder, place)
 
+    @worded()
     def cut(self, folder: str, place: Place) -> bytes:
         """Read an artifact's bytes out of a pack.
 
@@ -218,7 +217,7 @@ class Store:
             Damaged: if it is not what was written.
         """
         system, root = self._open()
-        with system.open_input_file(f"{root}/{name}") as file:
+        with worded(), system.open_input_file(f"{root}/{name}") as file:
             try:
                 artifact = seal.opened(file, name)
                 for number in range(*(span or (0, artifact.num_row_groups))):
@@ -252,6 +251,7 @@ class Store:
                 raise
             return False  # what lies there is no file
 
+    @worded()
     def _read(self, name: str, told: Callable[[pq.ParquetFile], Any]) -> Any:
         found = self._placed(name, anew=False)
         if found is not None:

@@ -35,8 +35,8 @@ from nostalgin_core import (
 )
 from pipelines.models import NETWORKS, PRINT, READER, Models
 from pipelines.store.shelf import PACKED
-from pipelines.store.stable import stable
-from pipelines.store.store import ARTIFACTS, key_of
+from pipelines.store.stable import key_of, stable
+from pipelines.store.store import ARTIFACTS
 
 CODE: Final = {
     "segment": 11,

@@ -10,11 +10,12 @@ import pytest
 
 from pipelines.index import manifest
 from pipelines.store import Store
-from tests.pipelines import s3
+from tests.pipelines import buckets, gcs, s3
 from tests.pipelines.cities import artifacts, copied, tree
+from tests.pipelines.gcs import google
 from tests.pipelines.s3 import bucket
 
-__all__ = ["bucket"]
+__all__ = ["bucket", "google"]
 
 # The first has three photos, the second one, the last none.
 SHARDS = (3, 1, 2)
@@ -65,26 +66,37 @@ def test_shards_of_which_one_is_killed_make_the_same_bytes(
     assert not [name for name in tree(other) if name.endswith(".partial")]
 
 
+@pytest.mark.parametrize(
+    ("server", "secret"),
+    [
+        ("bucket", s3.SECRET),
+        pytest.param("google", gcs.PRIVATE, marks=gcs.needs_server),
+    ],
+)
 def test_shards_in_a_bucket_make_the_same_bytes_and_tell_no_secret(
     city: Path,
     tmp_path: Path,
-    bucket: str,
+    server: str,
+    secret: str,
+    request: pytest.FixtureRequest,
 ) -> None:
+    root = request.getfixturevalue(server)
     copied(city, tmp_path)
     for name in (manifest.PARQUET, manifest.CSV):
-        s3.put(city / name, f"city/{name}")
+        buckets.put(root, city / name, f"city/{name}")
     for path in (city.parent / "photos").iterdir():
-        s3.put(path, f"photos/{path.name}")
+        buckets.put(root, path, f"photos/{path.name}")
     rows = [
         manifest.typed(row) | {"root": "../photos"}
         for row in manifest.read(Store(str(city))).rows
     ]
-    manifest.write(Store(f"{bucket}/city"), rows)
-    made = lambda: sum(n.startswith("artifacts") for n in s3.tree("city"))  # noqa: E731
-    said = run_shards(f"{bucket}/city", tmp_path / "models", made)
+    manifest.write(Store(f"{root}/city"), rows)
+    seen = lambda: buckets.tree(root, "city")  # noqa: E731
+    made = lambda: sum(name.startswith("artifacts") for name in seen())  # noqa: E731
+    said = run_shards(f"{root}/city", tmp_path / "models", made)
     ours = {n: one for n, one in tree(city).items() if n.startswith("artifacts")}
-    assert {n: o for n, o in s3.tree("city").items() if n in ours} == ours
-    assert s3.SECRET not in said
-    told = s3.objects("city")
+    assert {n: o for n, o in seen().items() if n in ours} == ours
+    assert secret not in said
+    told = buckets.objects(root, "city")
     assert "CURRENT" in told
-    assert not [name for name, data in told.items() if s3.SECRET.encode() in data]
+    assert not [name for name, data in told.items() if secret.encode() in data]

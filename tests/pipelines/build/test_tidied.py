@@ -10,7 +10,7 @@ from pipelines.build import tidied
 from pipelines.models import Models
 from pipelines.store import Store, packing
 from pipelines.store.packing import artifact
-from pipelines.store.store import key_of
+from pipelines.store.stable import key_of
 from pipelines.store.versions import Versions
 from tests.pipelines.cities import tree
 

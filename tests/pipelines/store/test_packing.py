@@ -10,8 +10,10 @@ from nostalgin_core.records import Assignment, Rejection
 from pipelines.store import Damaged, packing, tables
 from pipelines.store.packing import artifact, pack
 from pipelines.store.shelf import ARTIFACT
-from pipelines.store.store import Store, key_of
+from pipelines.store.stable import key_of
+from pipelines.store.store import Store
 from tests.pipelines import s3
+from tests.pipelines.buckets import objects
 from tests.pipelines.s3 import bucket
 
 __all__ = ["bucket"]
@@ -151,7 +153,7 @@ def test_packs_lie_in_a_bucket_as_well(bucket: str) -> None:
     before = told(store)
     pack(store, FOLDER)
     assert told(store) == before
-    (name,) = s3.objects("city")
+    (name,) = objects(bucket, "city")
     assert not ARTIFACT.fullmatch(name)
 
 

@@ -5,7 +5,8 @@ import pytest
 
 from nostalgin_core.records import Assignment, Rejection
 from pipelines.store import Damaged, tables
-from pipelines.store.store import Store, key_of
+from pipelines.store.stable import key_of
+from pipelines.store.store import Store
 from pipelines.store.tables import parquet_bytes
 
 ROWS = tables.table(Assignment, [Assignment("993-11-2", "k", 0, 0.93)])
