@@ -99,7 +99,7 @@ def absent(
     some = ", ".join(f"row {one.row} {quoted(one.photo)}" for one in lost[:MOST_ABSENT])
     more = " ..." if len(lost) > MOST_ABSENT else ""
     many = plural.of(len(lost), "photograph")
-    return [f"{name}: it names {many} not in the folder: {some}{more}"]
+    return [f"{name}: it names {many} not among those of the folder: {some}{more}"]
 
 
 def about(warnings: Sequence[str], rows: set[int]) -> list[str]:

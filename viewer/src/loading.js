@@ -7,28 +7,31 @@ const LATE = 'This takes long. If you opened this page as a file, run “nostalg
 export class Loading {
   constructor(element) {
     this.element = element;
-    this.late = setTimeout(() => element.append(paragraph(LATE)), LATE_S * 1000);
+    this.ended = false;
+    this.notes = []; // what stays beneath, whatever is awaited
+    this.late = setTimeout(() => {
+      this.notes = [paragraph(LATE)];
+      element.append(...this.notes);
+    }, LATE_S * 1000);
   }
 
   /** Says what is awaited. */
   tell(what) {
-    this.element.replaceChildren(paragraph(`Loading ${what} …`));
+    this.element.replaceChildren(paragraph(`Loading ${what} …`), ...this.notes);
   }
 
   /** Counts models until the first stands. */
   models(city) {
-    const count = () => {
-      if (document.body.classList.contains('running')) return;
-      const { downloading, parsing } = city.tiles.stats;
-      this.tell(`the first of ${city.record.blocks.length} blocks: ${
-        parsing ? 'building it' : downloading ? 'fetching it' : 'choosing it'}`);
-      setTimeout(count, 250);
-    };
-    count();
+    if (this.ended) return;
+    const { downloading, parsing } = city.tiles.stats;
+    this.tell(`the first of ${city.record.blocks.length} blocks: ${
+      parsing ? 'building it' : downloading ? 'fetching it' : 'choosing it'}`);
+    setTimeout(() => this.models(city), 250);
   }
 
-  /** There is a city, or a reason why not. */
+  /** There is a city, or a reason why not, which stays. */
   end() {
+    this.ended = true;
     clearTimeout(this.late);
   }
 }

@@ -337,12 +337,12 @@ def test_a_list_of_streets_and_houses_needs_no_blocks_and_lots(photos: Path) -> 
 
 def test_a_photograph_that_is_not_there_is_named_in_one_line(photos: Path) -> None:
     text = CATALOGUE.replace(",993,3,", "b/995_9.jpg,993,3,") + "gone.jpg,993,4,,,,\n"
-    told = [one for one in indexed(photos, text).warnings if "not in the folder" in one]
+    told = [one for one in indexed(photos, text).warnings if "not among those" in one]
     assert len(told) == 1
     assert "2 photographs" in told[0]
     assert "row 4 'b/995_9.jpg', row 6 'gone.jpg'" in told[0]
     quiet = indexed(photos, CATALOGUE).warnings
-    assert not any("not in the folder" in one for one in quiet)
+    assert not any("not among those" in one for one in quiet)
 
 
 def test_a_missing_catalogue_is_refused_by_name(photos: Path) -> None:
