@@ -62,7 +62,7 @@ function addWall(planes, corners, normal, kind) {
   const out = [normal.x / length, normal.z / length];
   const right = [out[1], -out[0]]; // seen from outside
   const depth = corners[0].x * out[0] + corners[0].z * out[1];
-  const key = [out[0], out[1]].map((v) => v.toFixed(2)).join() + Math.round(depth / SAME_PLANE_M);
+  const key = [out[0] * 100, out[1] * 100, depth / SAME_PLANE_M].map(Math.round).join(); // -0 is 0
   const wall = planes.get(key) ?? {
     out, right, depth, from: Infinity, to: -Infinity, bottom: Infinity, top: -Infinity, kind: 'plain',
   };
