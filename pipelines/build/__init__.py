@@ -22,6 +22,7 @@ from pipelines.build.corrected import Corrected, corrected
 from pipelines.build.external import serve
 from pipelines.build.isolation import ASIDE
 from pipelines.build.options import CityOptions, options, processes_here
+from pipelines.build.passes import together
 from pipelines.build.prepared import (
     DIRECTED,
     Prepared,
@@ -68,6 +69,7 @@ __all__ = [
     "schemes_of",
     "serve",
     "silent",
+    "together",
     "told_of_run",
     "unwatched",
     "written_anew",

@@ -16,9 +16,9 @@ from pipelines.build.bench import Bench
 from pipelines.build.city import Built, city
 from pipelines.build.embedded import in_process
 from pipelines.build.isolation import POOL
-from pipelines.build.launched import launched
 from pipelines.build.noted import cpu_s, note, stages
 from pipelines.build.options import CityOptions, part
+from pipelines.build.passes import worked
 from pipelines.build.prepared import Prepared, prepared
 from pipelines.build.report import (
     Lost,
@@ -36,7 +36,7 @@ from pipelines.index import asked
 from pipelines.index.asked import Asked
 from pipelines.index.row import Row
 from pipelines.models import one_thread
-from pipelines.store import Damaged, Store, held, runs
+from pipelines.store import Damaged, Store, held
 from pipelines.store.refuse import drop_run
 
 HEALINGS: Final = 3  # as often a run is repeated for what was damaged on the way
@@ -130,11 +130,11 @@ def carried_out(
     again = 0
     for _ in range(HEALINGS):
         with watched(partial(bench.versions.counts, store.root), todo.photos):
-            result = launched(options, partial(wired, asked_for), store)
+            results = worked(options, partial(wired, asked_for), store, asked_for.work)
         check(store, asked_for.work.run, bench.versions)
         asked_for.settle()
         stopping.check()  # from here on to its end: the run is noted, and shown
-        done = stages(result)
+        done = stages(*results)
         told = noted(done=done)
         again += sum(one.get("healed", 0) for one in done.values())
         report = replace(reported(store, run, todo), healed=again)
@@ -175,9 +175,9 @@ def made_alone(options: PipelineOptions, asked_for: Prepared, watch: Watch) -> R
     store = bench.store
     watched = watch if "://" not in store.root else unwatched
     with watched(partial(bench.versions.counts, store.root), asked_for.todo.photos):
-        result = launched(options, partial(wired, asked_for), store)
+        results = worked(options, partial(wired, asked_for), store, work)
     check(store, work.run, bench.versions)
-    done = stages(result).values()
+    done = stages(*results).values()
     again = sum(one.get("healed", 0) for one in done)
     report = replace(reported(store, work.run, work), healed=again)
     report = replace(report, run=asked_for.todo.run, cpu_seconds=cpu_s(done))
@@ -228,16 +228,17 @@ def published(
     return report
 
 
-def wired(asked_for: Prepared, pipeline: beam.Pipeline) -> None:
-    """Wire a build: its stages, and its tables."""
-    bench, todo = asked_for.bench, asked_for.work
-    write(city(pipeline, todo, bench, asked_for.mended.directions()), bench, todo)
+def wired(
+    asked_for: Prepared, todo: Asked, parts: int, pipeline: beam.Pipeline
+) -> None:
+    """Wire a build, or a pass of it: its stages, and its tables."""
+    bench, mended = asked_for.bench, asked_for.mended.directions()
+    write(city(pipeline, todo, bench, mended), bench, todo.run, parts)
 
 
-def write(built: Built, bench: Bench, todo: Asked) -> None:
+def write(built: Built, bench: Bench, run: str, parts: int) -> None:
     """Wire the run's tables."""
     store, of = bench.store, bench.versions
-    parts = runs.parts_of(todo.rows)
     for name, elements, of_each in (
         ("photos", built.photos, rows.photo_rows),
         ("stamps", built.photos, rows.stamp_rows),
@@ -248,6 +249,4 @@ def write(built: Built, bench: Bench, todo: Asked) -> None:
         ("borrowed", built.borrowed, rows.BorrowedRows(of)),
         ("rejections", built.rejections, rows.rejection_rows),
     ):
-        _ = elements | f"Table {name}" >> WriteTable(
-            store, todo.run, name, of_each, parts
-        )
+        _ = elements | f"Table {name}" >> WriteTable(store, run, name, of_each, parts)

@@ -3,10 +3,12 @@
 What ends a run is told in words: a worker that was killed, a folder that takes no more.
 """
 
+import contextlib
 import copy
 import errno
 import re
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator
 from typing import Final
 
 import apache_beam as beam
@@ -52,8 +54,9 @@ def ran(
     if runner != embedded.EMBEDDED:
         with cluster.told(runner):
             pipeline = beam.Pipeline(options=options)
-            wire(pipeline)
-            result = pipeline.run()
+            with swept(pipeline):
+                wire(pipeline)
+                result = pipeline.run()
             try:
                 with stopping.at_once():
                     result.wait_until_finish()
@@ -65,9 +68,13 @@ def ran(
         return result
     given = copy.deepcopy(options)  # which the embedded runner changes for itself
     pipeline = beam.Pipeline(embedded.runner(given), options=given)
-    wire(pipeline)
     try:
-        with embedded.on_loopback(), embedded.ending_with_a_worker():
+        with (
+            swept(pipeline),
+            embedded.on_loopback(),
+            embedded.ending_with_a_worker(),
+        ):
+            wire(pipeline)
             result = pipeline.run()
             result.wait_until_finish()
     except embedded.WorkerLost as problem:
@@ -81,6 +88,15 @@ def ran(
             raise
         raise Lost(unstored(store, why)) from problem
     return result
+
+
+@contextlib.contextmanager
+def swept(pipeline: beam.Pipeline) -> Iterator[None]:
+    """Remove a pipeline's folder of temporary files also where its run raises."""
+    try:
+        yield
+    finally:
+        shutil.rmtree(pipeline.local_tempdir, ignore_errors=True)
 
 
 def unwritten(traceback: str) -> str:

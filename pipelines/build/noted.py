@@ -79,9 +79,13 @@ def memory_mb(stages: Iterable[dict[str, Any]]) -> dict[str, int]:
     }
 
 
-def stages(result: PipelineResult) -> dict[str, dict[str, Any]]:
-    """Read the counters, times and memory of all stages."""
-    metrics = result.metrics().query()
+def stages(*results: PipelineResult) -> dict[str, dict[str, Any]]:
+    """Read the counters, times and memory of all stages, of a run's pipelines."""
+    metrics: dict[str, list[Any]] = {"counters": [], "distributions": []}
+    for result in results:
+        found = result.metrics().query()
+        for kind, so_far in metrics.items():
+            so_far.extend(found[kind])
     told: dict[str, dict[str, Any]] = {}
     spans: dict[str, dict[float, int]] = {}
     for one in metrics["counters"]:

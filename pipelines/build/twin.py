@@ -9,8 +9,6 @@ from itertools import takewhile
 
 from pipelines.store import Damaged, Store, key_of, runs
 
-PUBLISHING = frozenset({"places"})  # written when a run is shown
-
 
 def unshown(store: Store, first: str) -> str:
     """Give a run's name, or the next in its line that no shown run has."""
@@ -28,9 +26,8 @@ def line(first: str) -> Iterator[str]:
 def same_as_earlier(store: Store, first: str, run: str) -> str:
     """Name the latest run over the same that was shown and tells the same; or ""."""
     earlier = list(takewhile(lambda one: one != run, line(first)))
-    names = sorted(set(runs.SCHEMAS) - PUBLISHING)
     for one in reversed(earlier):
-        if all(alike(store, one, run, name) for name in names):
+        if all(alike(store, one, run, name) for name in sorted(runs.OF_WORK)):
             return one
     return ""
 

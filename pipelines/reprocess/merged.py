@@ -116,7 +116,4 @@ def write(
 
 def drop(store: Store, run: str) -> None:
     """Remove the tables of what was redone."""
-    folder = f"runs/{run}/{runs.REDONE}"
-    for name in store.names(folder):
-        store.remove(f"{folder}/{name}")
-    store.drop_folder(folder)
+    store.drop_tree(f"runs/{run}/{runs.REDONE}")

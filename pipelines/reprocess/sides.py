@@ -11,10 +11,9 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from nostalgin_core.records import Front
+from pipelines import build
 from pipelines.build import Streets
 from pipelines.index.asked import COLUMNS, WHY, short
 from pipelines.index.plan import BlockTask
@@ -146,10 +145,4 @@ def groups(*sides: Side) -> Groups:
     """Group blocks by the photographs that they share, on either side."""
     names = np.concatenate([one.names for one in sides])
     blocks = np.concatenate([one.blocks for one in sides])
-    nodes = np.union1d(names[names != 0], blocks)
-    shown = names != 0
-    a = np.searchsorted(nodes, names[shown])
-    b = np.searchsorted(nodes, blocks[shown])
-    edges = coo_array((np.ones(len(a), bool), (a, b)), shape=(len(nodes),) * 2)
-    labels = connected_components(edges, directed=False)[1]
-    return Groups(nodes, labels)
+    return Groups(*build.together(names, blocks))

@@ -74,11 +74,8 @@ def drop_unkept(store: Store, *, keep: int = 1, dry: bool = False) -> Dropped:
 
 def drop_run(store: Store, run: str) -> None:
     """Drop a run's folder, and in it that of a part which was at work."""
-    for folder in (f"runs/{run}/{runs.REDONE}", f"runs/{run}"):
-        for name in store.names(folder):
-            if name != runs.REDONE:
-                store.remove(f"{folder}/{name}")
-        store.drop_folder(folder)
+    store.drop_tree(f"runs/{run}")
+    store.drop_folder("runs")
 
 
 def chosen(store: Store, keep: int) -> tuple[tuple[str, ...], tuple[str, ...]]:

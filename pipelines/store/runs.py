@@ -38,11 +38,13 @@ def columns(**kinds: pa.DataType) -> pa.Schema:
 CURRENT: Final = "CURRENT"  # the file that names the run whose city is shown
 PUBLISHED: Final = "published.json"  # in a run's folder: it was shown once
 REDONE: Final = "redone"  # in a run's folder: tables of a part that is at work
+PASSES: Final = "passes"  # in either: those of each pass, while the run is at work
 NAME: Final = re.compile(r"\w{1,64}")  # of a run
 TEXT, NUMBER, COUNT = pa.string(), pa.float64(), pa.int64()
 NUMBERS: Final = pa.list_(pa.float64())
 Part = tuple[int, int]  # which, from 0, of how many
 PART: Final = 20_000  # rows of a manifest for each part of a run's tables
+BATCH: Final = 1024  # rows that are written out as plain values at once
 
 PHOTOS: Final = columns(
     name=TEXT,
@@ -136,6 +138,7 @@ SCHEMAS: Final = {
     "places": PLACES,  # of a run that was published
     "rejections": REJECTIONS,
 }
+OF_WORK: Final = tuple(name for name in SCHEMAS if name != "places")  # of a pipeline
 
 
 def run_id(manifest_sha256: str, versions: Versions, shard: str) -> str:
@@ -204,9 +207,25 @@ def write_table(
     which: Part = (0, 1),
 ) -> None:
     """Write a run's table, sorted, so that no order of the workers shows."""
-    ordered = sorted(rows, key=lambda row: json.dumps(row, sort_keys=True))
-    table = pa.Table.from_pylist(ordered, SCHEMAS[name])
-    store.write_table(table_path(run, name, which), table)
+    table = pa.Table.from_pylist(list(rows), SCHEMAS[name])
+    write_sorted(store, run, name, table, which)
+
+
+def write_sorted(
+    store: Store, run: str, name: str, table: pa.Table, which: Part = (0, 1)
+) -> None:
+    """Write a run's table as `write_table` does, of rows that are a table already."""
+    known = table.cast(SCHEMAS[name]).replace_schema_metadata(None).combine_chunks()
+    order = sorted(range(known.num_rows), key=list(texts(known)).__getitem__)
+    ordered = known.take(pa.array(order, pa.int64())).combine_chunks()
+    store.write_table(table_path(run, name, which), ordered)
+
+
+def texts(table: pa.Table) -> Iterator[str]:
+    """Write each row as text, by which rows are sorted, a few at a time."""
+    for batch in table.to_batches(max_chunksize=BATCH):
+        for row in batch.to_pylist():
+            yield json.dumps(row, sort_keys=True)
 
 
 def part_names(store: Store, run: str, name: str) -> list[str]:

@@ -144,6 +144,12 @@ class Store:
             for one in (name, *map(str, PurePosixPath(name).parents[:-1])):
                 Path(self.root, one).rmdir()  # an object store has none
 
+    def drop_tree(self, name: str) -> None:
+        """Remove a folder with all that is in it, if it is there."""
+        system, root = self._open()
+        with contextlib.suppress(FileNotFoundError):
+            system.delete_dir(f"{root}/{name}")
+
     def drop(self, name: str) -> None:
         """Remove a file if it is there; from a pack, by writing it without."""
         self.remove(name)
