@@ -5,6 +5,6 @@ Paper: section 3.1, one gray photo, nothing known of the camera. Open `photo` fi
 """
 
 from nostalgin_core.photo.frame import exposed, framed
-from nostalgin_core.photo.photo import decode, key, size_px
+from nostalgin_core.photo.photo import decode, key, paged, size_px
 
-__all__ = ["decode", "exposed", "framed", "key", "size_px"]
+__all__ = ["decode", "exposed", "framed", "key", "paged", "size_px"]

@@ -35,6 +35,8 @@ from nostalgin_core.records import Photo, Rejection
 MAX_MEGAPIXELS: Final = 150.0  # a 4x5 inch negative at 2,400 dpi has 115
 MIN_SIDE_PX: Final = 64  # below this no facade has a window
 
+PAGED: Final = ("TIFF", "GIF", "WEBP")  # formats of several pages, or frames
+
 _READERS: Final[dict[bytes, Callable[..., ImageFile.ImageFile]]] = {
     b"\xff\xd8\xff": JpegImagePlugin.jpeg_factory,
     b"\x89PNG\r\n\x1a\n": PngImagePlugin.PngImageFile,
@@ -100,6 +102,23 @@ def decode(
         detail = "a stripe of page parts them; cut each out, and index them one by one"
         return Rejection(key(data), "photo", "several prints", f"{name}: {detail}")
     return frame.framed(key(data), image)
+
+
+def paged(data: bytes) -> bool:
+    """Tell whether a photo's file holds other pages than the first, which is read.
+
+    A telephone's second picture beside the first is no page.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            opened = _open(data)
+            if opened.format not in PAGED:
+                return False
+            opened.seek(1)
+    except (_RefusedError, *_DAMAGE):
+        return False
+    return True
 
 
 def size_px(data: bytes) -> tuple[int, int] | None:

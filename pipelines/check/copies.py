@@ -3,7 +3,8 @@
 Files are the same by their SHA-256, looked at where their sizes are. Pictures look the
 same where their perceptual hashes (64 bits of a discrete cosine transform) differ in
 few bits: a scan that was saved anew, made smaller or brighter. What is told is always
-a pair of names; only a pair of different lots is grave.
+a pair of names, of a photograph and the first that it is like; only a pair of different
+lots is grave.
 """
 
 import hashlib
@@ -60,26 +61,37 @@ def alike(files: Files, lots: Lots, rows: Mapping[str, str]) -> Iterator[Finding
             continue
         if found.printed:
             printed.append(name)
+        if found.paged:
+            remedy = "save each of the others as a file, if it is a photograph"
+            words = f"{name}: its first is read alone"
+            yield Finding("several pages", rows[name], words, remedy, grave=False)
         if found.code is not None:
             hashes[name] = found.code
     if printed:
-        words = f"{printed[0]}, one of {len(printed)}"
-        remedy = "nothing where the picture is whole: its paper is cut off"
+        words = f"{printed[0]}, one of {len(printed)}: its paper is cut off"
+        remedy = "see that the picture is whole, as `nostalgin explain` shows it"
         yield Finding("light border", rows[printed[0]], words, remedy, grave=False)
     names = list(hashes)
     codes = np.array([hashes[name] for name in names], np.uint64)
-    for a, b in pairs(codes):
-        if files[names[a]].stat().st_size != files[names[b]].stat().st_size:
+    for a, b in likenesses(codes):
+        if not same(files[names[a]], files[names[b]]):
             yield pair("looks the same", names[a], names[b], lots, rows)
+
+
+def same(one: Path, other: Path) -> bool:
+    """Tell whether two files are the same."""
+    if one.stat().st_size != other.stat().st_size:
+        return False
+    a, b = (bounded.read(path, bounded.PHOTO_BYTES) for path in (one, other))
+    return a == b
 
 
 class Look(NamedTuple):
     """What a picture shows."""
 
-    code: (
-        int | None
-    )  # the hash of what lies within film and paper; None if that is plain
+    code: int | None  # the hash of what lies within its border; None if that is plain
     printed: bool  # on light paper
+    paged: bool  # its file holds others, which are not looked at
 
 
 def looks(path: Path, name: str) -> Look | Rejection:
@@ -87,20 +99,31 @@ def looks(path: Path, name: str) -> Look | Rejection:
     import imagehash
     from PIL import Image
 
-    picture = photo.decode(bounded.read(path, bounded.PHOTO_BYTES), name=name)
+    data = bounded.read(path, bounded.PHOTO_BYTES)
+    picture = photo.decode(data, name=name)
     if isinstance(picture, Rejection):
         return picture
     x0, y0, x1, y1 = picture.frame
     inner = picture.image[y0:y1, x0:x1]
-    on_paper = picture.sheet is not None
+    told = {"printed": picture.sheet is not None, "paged": photo.paged(data)}
     if inner.size == 0 or inner.std() < 1.0:
-        return Look(None, on_paper)
-    return Look(bits(imagehash.phash(Image.fromarray(inner)).hash), on_paper)
+        return Look(None, **told)
+    return Look(bits(imagehash.phash(Image.fromarray(inner)).hash), **told)
 
 
 def bits(hashed: Bool[np.ndarray, "8 8"]) -> int:
     """Write a hash as a number."""
     return int("".join("1" if bit else "0" for bit in hashed.ravel()), 2)
+
+
+def likenesses(codes: UInt64[np.ndarray, " n"]) -> list[tuple[int, int]]:
+    """Pair each hash with the first that it is like: of many alike few are told."""
+    each, first, which = np.unique(codes, return_index=True, return_inverse=True)
+    like = first.copy()
+    for a, b in pairs(each):
+        like[a], like[b] = min(like[a], first[b]), min(like[b], first[a])
+    told = like[which]
+    return [(int(told[at]), at) for at in range(len(codes)) if told[at] != at]
 
 
 def pairs(codes: UInt64[np.ndarray, " n"]) -> list[tuple[int, int]]:

@@ -37,6 +37,7 @@ from pipelines.site.folder import RECORD, Folder, recorded
 
 VIEWER: Final = Path(__file__).with_name("viewer_dist")
 THUMBNAIL_PX: Final = 1600  # a screen's height, for the view from where it was taken
+NAMELESS: Final = "other"  # what has no harmless letters, as a street in Kyoto
 SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
 
 SWAPPED: Final = ("site.json", "tileset.json")  # last, in this order
@@ -213,11 +214,11 @@ def safe(name: str) -> str:
     """Turn any name into a file name; different names give different ones.
 
     A harmless name stays as it is; another keeps its harmless letters and gets its
-    hash.
+    hash. None begins with a dot or a line, which hosts of sites leave out.
     """
     if re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", name):
         return name
-    letters = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:40]
+    letters = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_")[:40] or NAMELESS
     # a dot is in no harmless name, so that no other name can pose as this one
     return f"{letters}.{hashlib.sha256(name.encode()).hexdigest()[:12]}"
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from pipelines.check import check
-from pipelines.check.copies import MOST_APART, pairs
+from pipelines.check.copies import MOST_APART, likenesses, pairs
 from pipelines.cli import app
 from pipelines.index.index import index
 from pipelines.store import Store
@@ -214,3 +214,44 @@ def test_a_profile_that_was_spoilt_is_grave(tmp_path: Path) -> None:
     assert kinds(sound) == [("profile", True)]
     (sound / "profile.toml").unlink()  # of a city that was indexed before
     assert kinds(sound) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_each_hash_is_told_with_the_first_that_it_is_like(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    few = rng.integers(0, 2**63, 6, dtype=np.uint64)
+    flips = np.uint64(1) << rng.integers(0, 63, 300, dtype=np.uint64)
+    codes = few[rng.integers(6, size=300)] ^ flips
+    apart = np.bitwise_count(codes[:, None] ^ codes[None]) <= MOST_APART
+    first = apart.argmax(axis=1)
+    told = [(int(first[at]), at) for at in range(300) if first[at] != at]
+    assert likenesses(codes) == told
+    assert len(told) == 300 - 6
+
+
+def test_many_pictures_that_are_alike_are_told_once_each() -> None:
+    codes = np.full(20_000, 77, np.uint64)
+    assert likenesses(codes) == [(0, at) for at in range(1, 20_000)]
+    assert likenesses(codes[:0]) == []
+
+
+def test_alike_pictures_of_one_size_in_bytes_are_told(tmp_path: Path) -> None:
+    painted_so = pictures()
+    data = np.frombuffer(painted_so["5_1.png"], np.uint8)
+    picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE)
+    for name, one in (("5_1.png", picture), ("5_2.png", picture // 2 + 20)):
+        painted_so[name] = cv2.imencode(".bmp", one)[1].tobytes()
+    assert len(painted_so["5_1.png"]) == len(painted_so["5_2.png"])
+    assert kinds(city(tmp_path, SOUND, painted_so)) == [("looks the same", False)]
+
+
+@pytest.mark.parametrize(("pages", "told"), [(1, []), (3, [("several pages", False)])])
+def test_pages_that_nobody_reads_are_told(
+    tmp_path: Path, pages: int, told: list[tuple[str, bool]]
+) -> None:
+    painted_so = pictures()
+    data = np.frombuffer(painted_so["5_1.png"], np.uint8)
+    picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE)
+    every = [np.roll(picture, 40 * page, axis=1) for page in range(pages)]
+    painted_so["5_1.png"] = cv2.imencodemulti(".tif", every)[1].tobytes()
+    assert kinds(city(tmp_path, SOUND, painted_so)) == told

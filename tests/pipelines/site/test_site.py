@@ -139,6 +139,15 @@ def test_names_that_look_alike_do_not_clash() -> None:
     assert site.safe("993") == "993"
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["\u56db\u6761\u901a", "\u05e8\u05d7\u05d5\u05d1", "& <", "_x", "-y", ".git"],
+)
+def test_no_file_of_a_site_is_hidden(name: str) -> None:
+    assert site.safe(name)[0].isalnum()
+    assert site.safe(name) != site.safe(name + "!")
+
+
 def test_a_link_that_leads_out_is_refused(tmp_path: Path, viewer: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "site").mkdir()
