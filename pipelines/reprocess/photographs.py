@@ -8,7 +8,7 @@ the file before it.
 import errno
 import hashlib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -233,10 +233,16 @@ def wanted(place: int, reached: int | None, newer: bool) -> bool:  # noqa: FBT00
     return place < reached or (newer and place == reached)
 
 
-def fresh(tables: Iterable[pa.Table], city: str, unread: np.ndarray) -> Iterator[Fate]:
+def fresh(
+    tables: Iterable[pa.Table],
+    city: str,
+    unread: np.ndarray,
+    refused: Container[int] = frozenset(),
+) -> Iterator[Fate]:
     """Tell which photographs that no run has read are there to be read, each once.
 
-    `unread` are the photographs that are asked for and were not read, sorted.
+    `unread` are the photographs that are asked for and were not read, sorted. Of names
+    that the run has `refused` one is tried: it is new if it can be read by now.
     """
     told = np.zeros(len(unread), bool)
     for table in tables if len(unread) else ():
@@ -250,5 +256,15 @@ def fresh(tables: Iterable[pa.Table], city: str, unread: np.ndarray) -> Iterator
         told[at[mine]] = True
         wanted_rows = [found[one] for one in ids[mine].tolist()]
         for (name, root, _), one in zip(wanted_rows, present(wanted_rows), strict=True):
-            if one is not None:
+            known = short(name) in refused
+            if one is not None and not (known and unreadable(root, name)):
                 yield Fate(short(root, name), short(name), "new", one[1])
+
+
+def unreadable(root: str, name: str) -> bool:
+    """Tell whether a file that is there can't be read, as a run would read it."""
+    try:
+        Store(root).read_bytes(name)
+    except (OSError, ValueError):
+        return True
+    return False

@@ -159,7 +159,7 @@ def photographs(
         if one.cause:
             yield one
     unread = np.setdiff1d(asked, np.array(read, np.uint64))
-    yield from fresh(now.tables(before), now.store.root, unread)
+    yield from fresh(now.tables(before), now.store.root, unread, known.reached)
 
 
 def unmade(

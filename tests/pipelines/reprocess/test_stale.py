@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from pipelines import bounded
 from pipelines.index.index import index
 from pipelines.index.manifest import Unusable
 from pipelines.reprocess import Plan
@@ -14,7 +15,7 @@ from pipelines.store.store import Store
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, built, tree
 from tests.pipelines.reprocess import changing
-from tests.pipelines.reprocess.changing import HERE, planned
+from tests.pipelines.reprocess.changing import HERE, add, planned
 
 
 def causes(plan: Plan) -> dict[str, int]:
@@ -120,6 +121,21 @@ def test_what_changed_is_found_and_touches_its_block_alone(
 def test_a_file_that_was_only_touched_is_not_stale(city: Path) -> None:
     os.utime(city.parent / "photos/6_1.png")
     assert planned(city).nothing
+
+
+def test_a_file_that_can_not_be_read_is_told_once_and_new_when_it_can(
+    city: Path,
+) -> None:
+    path = add(city, "6_9.png", "6_9.png,6,1,Oak Street,10,7.0")
+    data = path.read_bytes()
+    os.truncate(path, bounded.PHOTO_BYTES + 1)  # a hole: it takes no room
+    assert causes(planned(city)) == {"new": 1}
+    report = built(city, HERE)
+    (why,) = [one for one in report.rejections if one["key"] == path.name]
+    assert (why["stage"], why["reason"]) == ("photo", "unreadable file")
+    assert planned(city).nothing
+    path.write_bytes(data)
+    assert causes(planned(city)) == {"new": 1}
 
 
 @pytest.mark.parametrize("asked", ["stamps", "read_bytes"])
