@@ -1,14 +1,13 @@
 """The city that is shown: its record, its models and where its blocks lie."""
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from nostalgin_core import city, formats
 from pipelines import bounded
-from pipelines.site import inside, safe
+from pipelines.site import inside
 
 SITE: Final = "site"
 
@@ -100,8 +99,3 @@ def published(folder: Path) -> Published:
     if not frames:
         raise Unexportable(f"{path} shows no block")
     return Published(site, record)
-
-
-def file_names(blocks: list[Json], pattern: Callable[[str], str]) -> list[str]:
-    """Name a file for each block, harmless whatever the block is called."""
-    return [pattern(safe(str(one["name"]))) for one in blocks]

@@ -16,8 +16,6 @@ from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field
 LONGEST_PX: Final = 4096  # side of a picture that is asked for; networks see 1024
 LEVEL_0: Final = "level0"
 
-Texts = str | list[Any] | dict[str, Any] | None
-
 
 def words(value: Any) -> str:
     """Read a text in whatever languages and wrapping either version has it."""
