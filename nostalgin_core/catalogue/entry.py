@@ -147,6 +147,8 @@ def _lot(cells: Mapping[str, str], photo: str, named: Named) -> tuple[str, str]:
         block, lot = _house(cells, photo) or (block, lot)
     if not (block and lot):
         lacking = "block" if not block else "lot"
+        if KEYS.isdisjoint(cells) and "street" in cells:
+            lacking = "street"
         raise ValueError(f"no {lacking}: fill in the cell, or delete the row")
     if any(mark in block + lot for mark in "/\\\0") or len(block + lot) > LONGEST:
         raise ValueError(

@@ -28,7 +28,8 @@ def words(value: Any) -> str:
     if isinstance(value, list):
         return "; ".join(filter(None, map(words, value)))
     text = re.sub(r"<[^<>]*>", " ", str(value if value is not None else ""))
-    return " ".join(html.unescape(text).split())
+    whole = text.encode(errors="replace").decode()  # JSON may tell half of a letter
+    return " ".join(html.unescape(whole).split())
 
 
 def listed(value: Any) -> Any:

@@ -110,12 +110,22 @@ def rows(data: bytes, name: str) -> Objects:
     found, rejections = [], []
     for number, one in enumerate(objects(data), 1):
         try:
-            found.append(kind(one).model_validate(one).row())
-        except ValidationError as problem:
+            found.append(written(kind(one).model_validate(one).row()))
+        except (ValidationError, UnicodeEncodeError) as problem:
             where, why = f"{name} record {number}", told(problem)
             rejections.append(Rejection(where, "catalogue", "nonsense record", why))
             found.append({})  # so that the others keep their numbers
     return Objects(tuple(found), tuple(rejections))
+
+
+def written(row: Row) -> Row:
+    """Give a row that can be written down.
+
+    Raises:
+        UnicodeEncodeError: if it holds half of a letter, as JSON's escapes may.
+    """
+    "".join((*row, *row.values())).encode()
+    return row
 
 
 def kind(one: Any) -> type[Tax1940s] | type[OldNyc] | type[Plain]:
@@ -162,7 +172,7 @@ def loaded(data: bytes) -> Any:
         try:
             return json.loads(data.decode("utf-8-sig"))
         except json.JSONDecodeError:
-            lines = data.decode("utf-8-sig").splitlines()
+            lines = data.decode("utf-8-sig").split("\n")  # texts hold other line ends
             return [json.loads(line) for line in lines if line.strip()]
     except (ValueError, RecursionError) as problem:
         raise NoList(f"is no JSON ({problem}): save it as JSON in UTF-8") from problem
@@ -192,8 +202,11 @@ def text(value: Any) -> str:
     return str(value)
 
 
-def told(problem: ValidationError) -> str:
+def told(problem: ValidationError | UnicodeEncodeError) -> str:
     """Tell the first thing that is wrong with a record, and the remedy."""
+    if isinstance(problem, UnicodeEncodeError):
+        half = ascii(problem.object[problem.start])
+        return f"it has a letter that is none, {half}; mend the record"
     first = problem.errors(include_url=False, include_input=False)[0]
     where = ".".join(map(str, first["loc"])) or "it"
     return f"{where}: {first['msg'].casefold()}; mend the record"

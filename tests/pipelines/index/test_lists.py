@@ -108,6 +108,31 @@ def test_a_record_that_makes_no_sense_spoils_no_other(tmp_path: Path) -> None:
     assert made.fronts == 1
 
 
+@pytest.mark.parametrize(
+    "odd",
+    [{"street": "\ud800x"}, {"note": "\udfff"}, {"\udc00": "x"}, {"block": "\ud83d"}],
+)
+def test_half_a_letter_costs_its_record_alone(
+    tmp_path: Path, odd: dict[str, str]
+) -> None:
+    records = [{"photo": f"{n}.jpg", "block": "5", "lot": str(n)} for n in (1, 2)]
+    made = written(tmp_path, "l.json", [records[0] | odd, records[1]], "1.jpg", "2.jpg")
+    (one, *_) = made.rejections
+    assert (one.key, one.reason) == ("l.json record 1", "nonsense record")
+    assert one.detail.endswith("; mend the record")
+    assert [row.front.lot for row in rows(tmp_path) if row.front] == ["2"]
+
+
+@pytest.mark.parametrize("mark", ["\u2028", "\x85", "\u2029"])
+def test_a_text_of_a_record_a_line_may_hold_any_line_end_but_one(mark: str) -> None:
+    lines = [
+        json.dumps({"photo": f"{n}.jpg", "note": f"a{mark}b"}, ensure_ascii=False)
+        for n in range(2)
+    ]
+    read = objects.rows("\n".join(lines).encode(), "l.jsonl")
+    assert [row["note"] for row in read.rows] == [f"a{mark}b"] * 2
+
+
 def test_the_plain_list_of_four_columns_is_read(tmp_path: Path) -> None:
     text = "borough,block,lot,filename\n1,993,8,dof_1.jpg\n"
     made = written(tmp_path, "list.csv", text, "dof_1.jpg")
