@@ -56,12 +56,14 @@ def pixels_alone(network: MaskRCNN) -> Network:
 def together(*networks: Network) -> Network:
     """Let several networks answer as one, as the paper's two do.
 
-    Their things are put together; of what they say about pixels, the mean counts.
+    Their things are put together; of what they say about pixels, and of whether it is
+    a room, the mean counts.
     """
 
     def call(gray: np.ndarray) -> tuple[np.ndarray, ...]:
-        *things, pixels = zip(*(network(gray) for network in networks), strict=True)
-        return (*map(np.concatenate, things), np.mean(pixels, axis=0))
+        *things, pixels, rooms = zip(*(one(gray) for one in networks), strict=True)
+        planes = (np.mean(plane, axis=0) for plane in (pixels, rooms))
+        return (*map(np.concatenate, things), *planes)
 
     return call
 

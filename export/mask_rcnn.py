@@ -2,7 +2,8 @@
 
 He et al., "Mask R-CNN", ICCV 2017, on MobileNetV2 (Sandler et al., CVPR 2018) with a
 feature pyramid of 128 channels: 7.2 million parameters, with the semantic branch
-(`semantic_branch`) that tells every pixel what it is. The backbone carries no batch
+(`semantic_branch`) that tells every pixel what it is and a head (`indoors`) that tells
+rooms from streets. The backbone carries no batch
 norm (it was folded into the convolutions), so that training with one photo a pass
 needs nothing special.
 
@@ -26,6 +27,7 @@ from torchvision.models.detection.rpn import RegionProposalNetwork, RPNHead
 from torchvision.ops import FeaturePyramidNetwork, MultiScaleRoIAlign
 from torchvision.ops.feature_pyramid_network import LastLevelMaxPool
 
+from export.indoors import Indoors
 from export.semantic_branch import SemanticBranch, losses, probabilities
 from nostalgin_core.segment import CATEGORIES
 
@@ -138,11 +140,12 @@ class MaskRCNN(nn.Module):
         self.rpn = _proposals()
         self.roi_heads = _heads(detections, score)
         self.branch = SemanticBranch(CHANNELS)
+        self.indoors = Indoors()
 
     def forward(
         self, gray: Tensor, targets: list[dict[str, Tensor]] | None = None
     ) -> tuple[Tensor, ...] | dict[str, Tensor]:
-        """Return (boxes, labels, scores, masks, pixels), or losses if training."""
+        """Return boxes, labels, scores, masks, pixels, indoors; losses if training."""
         height, width = gray.shape[-2:]
         images = ImageList(gray, [(height, width)] * gray.shape[0])
         taps, features = self.backbone.both(gray / 127.5 - 1)
@@ -159,8 +162,8 @@ class MaskRCNN(nn.Module):
             return rpn_losses | lost | losses(logits, targets[0]["cells"])
         logits = self.branch(taps, levels)
         first, pixels = found[0], probabilities(logits)[0]
-        masks = first["masks"][:, 0]
-        return first["boxes"], first["labels"], first["scores"], masks, pixels
+        things = (*(first[part] for part in ("boxes", "labels", "scores")),)
+        return *things, first["masks"][:, 0], pixels, self.indoors(taps)[0]
 
     def branch_losses(
         self, gray: Tensor, targets: list[dict[str, Tensor]]

@@ -27,9 +27,11 @@ from nostalgin_core import session
 from nostalgin_core.segment.segment import prepared
 
 _MODELS = Path(nostalgin_core.__file__).parent / "models"
+SHIPPED = _MODELS / "segment.onnx"
 OPSET = 17
 THINGS = ("boxes", "labels", "scores", "masks")
-OUTPUTS = (*THINGS, "pixels")
+PLANES = ("pixels", "indoors")
+OUTPUTS = (*THINGS, *PLANES)
 TOLERANCE = 0.05  # px, and hundredths of that in scores: rounding, added up
 
 
@@ -48,8 +50,9 @@ def export(network: MaskRCNN, example: Float32[np.ndarray, "1 1 h w"]) -> bytes:
             opset_version=OPSET,
             input_names=["gray"],
             output_names=list(OUTPUTS),
-            dynamic_axes={"gray": {2: "h", 3: "w"}, "pixels": {1: "rows", 2: "columns"}}
-            | {name: {0: "n"} for name in THINGS},
+            dynamic_axes={"gray": {2: "h", 3: "w"}}
+            | {name: {0: "n"} for name in THINGS}
+            | {name: {1: f"{name}_h", 2: f"{name}_w"} for name in PLANES},
             do_constant_folding=False,
             dynamo=False,
         )
@@ -88,7 +91,7 @@ def disparity(
 
 def open_shipped() -> session.Session:
     """Open the network that ships with the core, checked against its lock."""
-    return session.load((_MODELS / "segment.onnx").read_bytes(), locked())
+    return session.load(SHIPPED.read_bytes(), locked())
 
 
 def locked() -> str:

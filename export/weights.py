@@ -14,7 +14,15 @@ from onnx import numpy_helper
 
 GENERATOR = "generator."  # begins the names of the inpainter's weights
 BRANCH = "branch."  # begins the names of the semantic branch's weights
-PARTS = ("backbone", "rpn", "roi_heads", BRANCH, GENERATOR)  # what else was folded
+INDOORS = "indoors."  # begins the names of the head's that tells rooms from streets
+PARTS = (
+    "backbone",
+    "rpn",
+    "roi_heads",
+    BRANCH,
+    INDOORS,
+    GENERATOR,
+)  # what else was folded
 CAST = "|half"  # ends the names of weights that an ONNX file stores in half precision
 
 

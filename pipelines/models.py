@@ -15,7 +15,7 @@ LOCK: Final = "models.lock"
 NETWORKS: Final = ("segment", "inpaint")  # called as the stages that ask them
 READER: Final = "placard"  # the stage that asks the reader of print
 PRINT: Final = "rapidocr-onnxruntime"  # which it comes with
-SHAPES: Final = {"segment": (1, 5), "inpaint": (3, 1)}  # inputs, outputs
+SHAPES: Final = {"segment": (1, 6), "inpaint": (3, 1)}  # inputs, outputs
 PACKAGED: Final = Path(str(resources.files("nostalgin_core") / "models"))
 
 

@@ -11,14 +11,17 @@ from nostalgin_core.records import Category
 CATEGORIES: tuple[Category, ...] = get_args(Category)
 STRIDE_PX: Final = 4  # of the network's input, a pixel's answer
 PLANES: Final = 4  # ground, front, what hides it, an end of a front
+COARSEST_PX: Final = 32  # a cell's that says whether it is in a room
 PROBE_PX: Final = 64
 
 Network = Callable[[Float32[np.ndarray, "1 1 h w"]], tuple[np.ndarray, ...]]
-"""Maps gray 0 to 255 to boxes (n 4), labels from 1 (n), scores (n), masks (n m m) and
-pixels (4 h/4 w/4): how likely each is ground, front, what hides it, and a front's end.
+"""Maps gray 0 to 255 to boxes (n 4), labels from 1 (n), scores (n), masks (n m m),
+pixels (4 h/4 w/4): how likely each is ground, front, what hides it, and a front's end,
+and indoors (1 h/32 w/32): logits whose mean tells rooms from streets.
 """
 
 Pixels = Float32[np.ndarray, "4 rows columns"]
+Say = Float32[np.ndarray, "1 rows columns"]
 
 
 class Nonsense(ValueError):  # noqa: N818 - it reads as what it is about
@@ -26,13 +29,14 @@ class Nonsense(ValueError):  # noqa: N818 - it reads as what it is about
 
 
 class Answer(NamedTuple):
-    """Boxes (n 4), labels from 1 (n), scores (n), masks (n m m), and pixels."""
+    """Boxes (n 4), labels from 1 (n), scores (n), masks (n m m), pixels, indoors."""
 
     boxes: np.ndarray
     labels: np.ndarray
     scores: np.ndarray
     masks: np.ndarray
     pixels: Pixels
+    indoors: Say
 
 
 def checked(answer: Sequence[np.ndarray], shape: tuple[int, int]) -> Answer:
@@ -44,8 +48,8 @@ def checked(answer: Sequence[np.ndarray], shape: tuple[int, int]) -> Answer:
     if len(answer) != len(Answer._fields):
         raise Nonsense(
             f"the segmentation network gives {len(answer)} outputs instead of boxes, "
-            "labels, scores, masks and pixels: it is older than this program; install "
-            "the package again, or export it anew"
+            "labels, scores, masks, pixels and indoors: it is older than this program; "
+            "install the package again, or export it anew"
         )
     told = Answer(*answer)
     count, size = len(told.labels), told.masks.shape[-1] if told.masks.ndim else 0
@@ -55,6 +59,7 @@ def checked(answer: Sequence[np.ndarray], shape: tuple[int, int]) -> Answer:
         (count,),
         (count, size, size),
         (PLANES, *(side // STRIDE_PX for side in shape)),
+        (1, *(side // COARSEST_PX for side in shape)),
     )
     for name, one, wanted in zip(Answer._fields, answer, shapes, strict=True):
         if one.shape != wanted:

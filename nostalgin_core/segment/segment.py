@@ -24,6 +24,7 @@ from nostalgin_core.segment.answer import (
 )
 from nostalgin_core.segment.flare import flares
 from nostalgin_core.segment.hiding import hiding
+from nostalgin_core.segment.indoors import REASON, REMEDY, inside, log_odds
 from nostalgin_core.segment.pixels import mended
 from nostalgin_core.segment.posture import doubted, excess, sure, undone
 from nostalgin_core.segment.punch import healed, punches
@@ -41,6 +42,7 @@ class Found(NamedTuple):
     things: tuple[Instance, ...]  # surest first
     pixels: Pixels  # of the frame
     sure: float  # share of the pixels that it was shown and is sure of
+    indoors: float  # log odds that it was taken in a room
 
 
 def segment(
@@ -67,6 +69,8 @@ def segment(
     other = fallen(photo, found, network, short_px=short_px, long_px=long_px)
     if other is not None:
         return other
+    if inside(found.indoors, found.things):
+        return Rejection(photo.key, "segment", REASON, REMEDY)
     return trusted(
         photo, found, facade_score=facade_score, occluder_score=occluder_score
     )
@@ -89,25 +93,33 @@ def everything(
     """
     sheet = photo.sheet or photo.frame
     x0, y0, x1, y1 = sheet
-    shown = healed(photo, punches(photo))[y0:y1, x0:x1]
-    gray = prepared(shown, short_px=short_px, long_px=long_px)
-    boxes, labels, scores, masks, pixels = asked(gray, network)
+    gray = shown(photo, short_px=short_px, long_px=long_px)
+    boxes, labels, scores, masks, pixels, indoors = asked(gray, network)
     scale = np.array([x1 - x0, y1 - y0] * 2) / (gray.shape[::-1] * 2)
     found = []
     for i in np.argsort(-scores, kind="stable"):
         if scores[i] < least:
             break
-        placed = laid_over(masks[i], boxes[i] * scale, shown.shape)
+        placed = laid_over(masks[i], boxes[i] * scale, (y1 - y0, x1 - x0))
         if placed is not None:
             box, probability = placed
             here = Box(box.x0 + x0, box.y0 + y0, box.x1 + x0, box.y1 + y0)
             category = CATEGORIES[int(labels[i]) - 1]
             found.append(Instance(category, float(scores[i]), here, probability))
-    told = sure(pixels)
+    told, room = sure(pixels), log_odds(indoors, sheet, photo.frame)
     if photo.sheet is None:
-        return Found(tuple(found), pixels, told)
-    inside = tuple(within(found, photo.frame))
-    return Found(inside, of_frame(pixels, sheet, photo.frame), told)
+        return Found(tuple(found), pixels, told, room)
+    pictured = tuple(within(found, photo.frame))
+    return Found(pictured, of_frame(pixels, sheet, photo.frame), told, room)
+
+
+def shown(
+    photo: Photo, *, short_px: int = 416, long_px: int = 1344
+) -> Float32[np.ndarray, "rows columns"]:
+    """Return what the network is shown: punched holes healed, a print on its paper."""
+    x0, y0, x1, y1 = photo.sheet or photo.frame
+    whole = healed(photo, punches(photo))[y0:y1, x0:x1]
+    return prepared(whole, short_px=short_px, long_px=long_px)
 
 
 def asked(gray: Float32[np.ndarray, "rows columns"], network: Network) -> Answer:

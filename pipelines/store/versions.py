@@ -39,7 +39,7 @@ from pipelines.store.stable import key_of, stable
 from pipelines.store.store import ARTIFACTS
 
 CODE: Final = {
-    "segment": 11,
+    "segment": 12,
     "matte": 7,
     "rectify": 11,
     "compare": 2,

@@ -7,6 +7,7 @@ pytest.importorskip("onnx")
 from export.fit_target import Fronts, fit, fronts, right
 from nostalgin_core.segment import CATEGORIES
 from tests.export.painted_segmentation import painted
+from tests.outdoors import outdoors
 
 
 def _photos(seed: int, count: int = 240) -> list[Fronts]:
@@ -42,7 +43,7 @@ def test_fronts_are_weighed_as_found() -> None:
         masks = np.ones((2, 28, 28), np.float32)
         kinds = np.array([0.05, 0.9, 0.05, 0.0], np.float32)[:, None, None]
         pixels = np.tile(kinds, (1, height // 4, width // 4))
-        return boxes * scale, labels, scores, masks, pixels
+        return boxes * scale, labels, scores, masks, pixels, outdoors(gray)
 
     ((rows, recorded),) = fronts([painted()], network)
     assert rows.shape == (2, 7)

@@ -46,7 +46,7 @@ def _weights(seed: int = 0) -> dict[str, np.ndarray]:
 def test_a_detection_is_a_box_a_label_a_score_and_a_mask() -> None:
     network = load_weights(MaskRCNN(score=0.0, detections=7), _weights()).eval()
     with torch.inference_mode():
-        boxes, labels, scores, masks, pixels = network(
+        boxes, labels, scores, masks, pixels, rooms = network(
             torch.full((1, 1, 128, 160), 90.0)
         )
     count = len(boxes)
@@ -55,6 +55,7 @@ def test_a_detection_is_a_box_a_label_a_score_and_a_mask() -> None:
     assert labels.shape == scores.shape == (count,)
     assert masks.shape == (count, 46, 46)
     assert pixels.shape == (4, 32, 40)
+    assert rooms.shape == (1, 4, 5)
     assert labels.min() >= 1
     assert labels.max() <= 6
     assert (boxes[:, 2] <= 160).all()
@@ -88,12 +89,14 @@ def test_a_network_may_answer_some_things_alone() -> None:
 def test_networks_that_answer_together_answer_what_each_does() -> None:
     def network(label: int) -> Callable[[np.ndarray], tuple[np.ndarray, ...]]:
         box, mask = np.zeros((label, 4)), np.zeros((label, 46, 46))
-        pixels = np.full((4, 8, 8), 0.2 * label)
-        return lambda _: (box, np.full(label, label), np.ones(label), mask, pixels)
+        pixels, rooms = np.full((4, 8, 8), 0.2 * label), np.full((1, 1, 1), label)
+        told = box, np.full(label, label), np.ones(label), mask, pixels, rooms
+        return lambda _: told
 
     answer = together(network(1), network(2))(np.zeros(1))
-    boxes, labels, scores, masks, pixels = answer
+    boxes, labels, scores, masks, pixels, rooms = answer
     np.testing.assert_allclose(pixels, 0.3)
+    np.testing.assert_allclose(rooms, 1.5)
     assert labels.tolist() == [1, 2, 2]
     assert len(boxes) == len(scores) == len(masks) == 3
 
@@ -221,7 +224,7 @@ def test_pixels_alone_are_the_whole_networks() -> None:
     gray = np.random.default_rng(1).uniform(0, 255, (1, 1, 96, 128))
     gray = gray.astype(np.float32)
     (alone,), whole = pixels_alone(network)(gray), as_callable(network)(gray)
-    np.testing.assert_allclose(alone, whole[-1], atol=1e-6)
+    np.testing.assert_allclose(alone, whole[4], atol=1e-6)
 
 
 def test_cells_themselves_are_judged_perfect() -> None:
@@ -269,7 +272,7 @@ def test_the_average_of_a_run_can_be_asked() -> None:
     run = begin(_weights(), SHORT)
     advance(run, SHORT, drawn(POOLS, CUT, run.step, SHORT))
     with torch.inference_mode():
-        assert len(averaged(run)(torch.full((1, 1, 64, 64), 90.0))) == 5
+        assert len(averaged(run)(torch.full((1, 1, 64, 64), 90.0))) == 6
 
 
 def test_what_is_frozen_has_no_gradient() -> None:

@@ -12,6 +12,7 @@ from export.pseudo_labels import (
     unlabelled,
 )
 from nostalgin_core.records import Box, Instance
+from tests.outdoors import outdoors
 
 SHAPE = (416, 416)
 FRONT = (60.0, 100.0, 200.0, 380.0)  # in pixels of the photo; so is what stands by it
@@ -53,7 +54,14 @@ def fickle(gray: np.ndarray) -> tuple[np.ndarray, ...]:
         scores.append(0.8)
     masks = np.ones((len(boxes), 8, 8), np.float32)
     pixels = np.full((4, *(side // 4 for side in gray.shape[-2:])), 0.5, np.float32)
-    return np.array(boxes), np.array(labels), np.array(scores), masks, pixels
+    return (
+        np.array(boxes),
+        np.array(labels),
+        np.array(scores),
+        masks,
+        pixels,
+        outdoors(gray),
+    )
 
 
 def test_layers_mirror_back_and_mark_what_is_doubted() -> None:

@@ -11,6 +11,7 @@ from export.mask_rcnn import MaskRCNN
 from export.rare import KINDS
 from export.rare_exam import fates, scenes, sharing
 from tests.export.painted_segmentation import painted
+from tests.outdoors import outdoors
 
 SAMPLES = [painted(seed) for seed in range(6)]
 
@@ -21,7 +22,14 @@ def silent(gray: np.ndarray) -> tuple[np.ndarray, ...]:
     pixels = np.full((4, height // 4, width // 4), 0.3, np.float32)
     none = np.zeros(0, np.float32)
     masks = np.zeros((0, 46, 46), np.float32)
-    return np.zeros((0, 4), np.float32), none.astype(np.int64), none, masks, pixels
+    return (
+        np.zeros((0, 4), np.float32),
+        none.astype(np.int64),
+        none,
+        masks,
+        pixels,
+        outdoors(gray),
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -93,11 +93,11 @@ def answering(**changed: np.ndarray) -> bytes:
         "masks": masks,
     } | changed
     nodes = [helper.make_node("Identity", [f"{n}_in"], [n]) for n in given]
-    constants, answers = painted.of_pixels()
+    constants, answers = painted.of_planes()
     nodes += [helper.make_node("Shape", ["image"], ["shape"]), *answers]
     constants |= {f"{name}_in": value for name, value in given.items()}
     kinds = {n: helper.np_dtype_to_tensor_dtype(v.dtype) for n, v in given.items()}
-    kinds["pixels"] = TensorProto.FLOAT
+    kinds |= {"pixels": TensorProto.FLOAT, "indoors": TensorProto.FLOAT}
     return painted.network(nodes, constants, ["image"], kinds)
 
 

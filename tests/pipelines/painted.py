@@ -72,14 +72,20 @@ def pixels() -> np.ndarray:
     return np.stack([*planes, 0.98 * ends])[:, 2::4, 2::4].astype(np.float32)
 
 
-def of_pixels() -> tuple[dict[str, np.ndarray], list[onnx.NodeProto]]:
-    """Give the constants and steps that answer for the pixels of an image's `shape`."""
+def of_planes() -> tuple[dict[str, np.ndarray], list[onnx.NodeProto]]:
+    """Give the constants and steps that answer for pixels of an image's `shape`.
+
+    No cell of them is in a room.
+    """
     constants = {
         "sides": np.array([2, 3], np.int64),  # h, w
         "stride": np.array(4, np.int64),
         "first": np.array([1, 4], np.int64),
         "axis": np.array([0], np.int64),
         "planes": pixels()[None],
+        "coarsest": np.array(32, np.int64),
+        "single": np.array([1], np.int64),
+        "outdoors": np.array(-9, np.float32),
     }
     nodes = [
         helper.make_node("Gather", ["shape", "sides"], ["whole"]),
@@ -89,6 +95,9 @@ def of_pixels() -> tuple[dict[str, np.ndarray], list[onnx.NodeProto]]:
             "Resize", ["planes", "", "", "wanted"], ["resized"], mode="linear"
         ),
         helper.make_node("Squeeze", ["resized", "axis"], ["pixels"]),
+        helper.make_node("Div", ["whole", "coarsest"], ["few"]),
+        helper.make_node("Concat", ["single", "few"], ["grid"], axis=0),
+        helper.make_node("Expand", ["outdoors", "grid"], ["indoors"]),
     ]
     return constants, nodes
 
@@ -109,14 +118,15 @@ def segment_network() -> bytes:
         helper.make_node("Cast", ["extent"], ["extent32"], to=TensorProto.FLOAT),
         helper.make_node("Mul", ["shares", "extent32"], ["boxes"]),
     ]
-    more, answering = of_pixels()
+    more, answering = of_planes()
     constants |= more
     nodes += answering
     nodes += [
         helper.make_node("Identity", [name], [f"{name}_out"])
         for name in ("labels", "scores", "masks")
     ]
-    kinds = {"boxes": 1, "labels_out": 7, "scores_out": 1, "masks_out": 1, "pixels": 1}
+    kinds = {"boxes": 1, "labels_out": 7, "scores_out": 1, "masks_out": 1}
+    kinds |= {"pixels": 1, "indoors": 1}
     return network(nodes, constants, ["image"], kinds)
 
 

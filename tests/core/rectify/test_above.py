@@ -20,9 +20,8 @@ FROM_ABOVE = (  # of historic_streets: from roofs, windows and the air
     *("707864f-a", "708949f-b", "712796f-a", "716148f-b", "716457f-a", "717493f-c"),
     *("710365f-a", "711917f-a", "712124f-b", "712950f-c", "721818f-a"),
     *("718145f-a", "718567f-a", "718568f-a", "720101f-b", "721409f-b", "722429f-b"),
-    *("723359f-b", "727591f-a", "730133f-b", "730184f-b"),
+    *("723359f-b", "730133f-b", "730184f-b"),
 )
-INDOORS = ("703840f-a", "703840f-b", "716168f-a", "717371f-a")
 FROM_THE_STREET = ("711426f-b", "712123f-b", "711703f-a", "729327f-a")
 
 
@@ -124,10 +123,3 @@ def test_real_views_from_above_give_no_front(name: str, shipped: Network) -> Non
 @pytest.mark.parametrize("name", FROM_THE_STREET)
 def test_real_streets_are_not_seen_from_above(name: str, shipped: Network) -> None:
     assert above.REASON not in reasons(name, shipped)
-
-
-@needs_data
-@pytest.mark.xfail(reason="docs/segmentation.md says why", strict=True)
-@pytest.mark.parametrize("name", INDOORS)
-def test_rooms_give_no_front(name: str, shipped: Network) -> None:
-    assert None not in reasons(name, shipped)

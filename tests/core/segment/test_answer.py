@@ -10,6 +10,7 @@ SOUND = {
     "scores": np.array([0.9, 0.2], np.float32),
     "masks": np.zeros((2, 46, 46), np.float32),
     "pixels": np.zeros((4, 32, 40), np.float32),
+    "indoors": np.zeros((1, 4, 5), np.float32),
 }
 NAN = np.full((2, 4), np.nan, np.float32)
 
@@ -18,9 +19,12 @@ def test_a_sound_answer_is_taken_as_it_is() -> None:
     assert checked(tuple(SOUND.values()), SHAPE).labels is SOUND["labels"]
 
 
-def test_a_network_of_before_the_branch_is_told_to_be_older() -> None:
-    with pytest.raises(Nonsense, match=r"gives 4 outputs .* older"):
-        checked(tuple(SOUND.values())[:4], SHAPE)
+@pytest.mark.parametrize("count", [4, 5])
+def test_a_network_of_before_the_branch_or_the_head_is_told_to_be_older(
+    count: int,
+) -> None:
+    with pytest.raises(Nonsense, match=rf"gives {count} outputs .* older"):
+        checked(tuple(SOUND.values())[:count], SHAPE)
 
 
 @pytest.mark.parametrize(
@@ -35,6 +39,7 @@ def test_a_network_of_before_the_branch_is_told_to_be_older() -> None:
         ("masks", np.zeros((2, 46), np.float32)),
         ("masks", np.zeros((2, 46, 45), np.float32)),
         ("pixels", np.zeros((4, 32, 39), np.float32)),
+        ("indoors", np.zeros((4, 5), np.float32)),
     ],
 )
 def test_nonsense_is_named(name: str, value: np.ndarray) -> None:

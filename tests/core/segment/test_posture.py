@@ -21,6 +21,7 @@ from nostalgin_core.segment.posture import (
     undone,
 )
 from tests.data import DATA, needs_data
+from tests.outdoors import outdoors
 
 FALLEN = {  # of historic_streets
     "702455f-a": "turned by 90 degrees",
@@ -121,7 +122,14 @@ def _surest_of(kind: int) -> Network:
             pixels[1] = 0.97
         one = np.ones(1, np.float32)
         masks = np.ones((1, 28, 28), np.float32)
-        return box.astype(np.float32), np.ones(1, int), one, masks, pixels
+        return (
+            box.astype(np.float32),
+            np.ones(1, int),
+            one,
+            masks,
+            pixels,
+            outdoors(gray),
+        )
 
     return network
 

@@ -20,6 +20,7 @@ from nostalgin_core.segment.segment import (
     segment,
 )
 from tests.data import DATA, needs_data
+from tests.outdoors import outdoors
 
 FACADE = CATEGORIES.index("facade") + 1
 PERSON = CATEGORIES.index("person") + 1
@@ -45,7 +46,7 @@ def _answering(
         # Pixels that know little: they doubt what masks say, and outvote none.
         pixels = np.full((4, height // 4, width // 4), 0.5, np.float32)
         pixels[0], pixels[2] = 0.1, 0.4
-        return boxes, labels, scores, masks, pixels
+        return boxes, labels, scores, masks, pixels, outdoors(gray)
 
     return network
 

@@ -8,6 +8,7 @@ from nostalgin_core.records import Box, Instance, Photo
 from nostalgin_core.segment import segment
 from nostalgin_core.segment.segment import everything
 from nostalgin_core.segment.sheet import of_frame, within
+from tests.outdoors import outdoors
 
 SHEET, FRAME = Box(0, 0, 240, 160), Box(24, 16, 220, 120)
 
@@ -26,7 +27,14 @@ def _answering(gray: np.ndarray) -> tuple[np.ndarray, ...]:
     pixels[1] = np.linspace(0.2, 0.99, width // 4)
     box = np.array([[0, 0, width, height]], np.float32)
     one = np.ones(1, np.float32)
-    return box, np.ones(1, int), one, np.ones((1, 46, 46), np.float32), pixels
+    return (
+        box,
+        np.ones(1, int),
+        one,
+        np.ones((1, 46, 46), np.float32),
+        pixels,
+        outdoors(gray),
+    )
 
 
 def test_what_is_cut_down_to_a_frame_stays_where_it_is() -> None:

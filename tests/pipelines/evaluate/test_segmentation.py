@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from nostalgin_core.segment import CATEGORIES
 from pipelines.cli import app
 from pipelines.evaluate import Unmeasurable, labels, segmentation, segmentation_table
+from tests.outdoors import outdoors
 
 W, H = 320, 256
 LEFT = (20, 40, 150, 220)
@@ -71,7 +72,7 @@ def _network(*things: tuple[str, tuple[int, ...], float], texels: int = 46) -> N
         planes = [np.where(kinds == kind, 0.98, 0.01) for kind in range(3)]
         pixels = np.stack([*planes, np.zeros(kinds.shape)])[:, 2::4, 2::4]
         answer = boxes.astype(np.float32), names, scores, masks
-        return *answer, pixels.astype(np.float32)
+        return *answer, pixels.astype(np.float32), outdoors(gray)
 
     return answer
 

@@ -137,8 +137,8 @@ def test_a_photo_without_fronts_is_explained_too(
     networks: Networks, tmp_path: Path
 ) -> None:
     def blind(gray: np.ndarray) -> tuple[np.ndarray, ...]:
-        *things, pixels = networks.segment(gray)
-        return (*(one[:0] for one in things), pixels)
+        *things, pixels, rooms = networks.segment(gray)
+        return (*(one[:0] for one in things), pixels, rooms)
 
     found = explain(
         painted.photo(1), tmp_path, Networks(blind, networks.inpaint), started=0.0
