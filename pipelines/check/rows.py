@@ -6,7 +6,7 @@ from math import exp, log
 from statistics import median
 from typing import Final
 
-from nostalgin_core.address import house_numbers
+from nostalgin_core.address import house_numbers, plain_name
 from nostalgin_core.catalogue import Naming
 from pipelines.check.finding import Finding
 from pipelines.index.row import CSV, Row
@@ -31,7 +31,7 @@ def keys(rows: Sequence[Row], naming: Naming) -> Iterator[Finding]:
             words = f"{row.photo} by its name is of {told[0]}-{told[1]}"
             remedy = f"mend the lot ({front.block}-{front.lot}) or the photo"
             yield Finding("other lot by its name", row.key, words, remedy, grave=False)
-        where = (front.block, front.street.casefold(), front.address.casefold())
+        where = (front.block, plain_name(front.street), front.address.casefold())
         first = places.setdefault(where, row)
         if front.address and first.front and first.front.lot != front.lot:
             words = f"{front.address} {front.street} is of lot {first.front.lot}"

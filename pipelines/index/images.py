@@ -9,7 +9,11 @@ from nostalgin_core.records import Rejection
 from pipelines.store import textual
 
 SUFFIXES: Final = (
-    ".bmp .gif .j2k .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
+    ".bmp .gif .j2k .jfif .jp2 .jpeg .jpg .png .tif .tiff .webp".split()  # noqa: SIM905
+)
+UNREAD: Final = (  # pictures, too: they are told, lest anybody misses them
+    *(".avif", ".djvu", ".eps", ".heic", ".heif", ".jxl", ".pdf", ".psd"),
+    *(".arw", ".cr2", ".cr3", ".dng", ".nef", ".orf"),  # raw
 )
 WRITTEN: Final = ("site", "artifacts", "runs", "readings")  # in the city folder
 
@@ -22,8 +26,8 @@ def images(folder: Path, city: str) -> tuple[list[str], list[Rejection]]:
     """List the images below a folder, by their paths relative to it.
 
     What lies in the city folder is none of them, if that is inside. Folders that can't
-    be read, links to folders, and images that are no files or whose names are no text
-    are rejected by name.
+    be read, links to folders, images that are no files or whose names are no text, and
+    pictures of formats that are not read are rejected by name.
 
     Raises:
         Nothing: if there is no such folder, or no image in it, or if it is one that
@@ -74,6 +78,9 @@ def walked(here: Path, outputs: Collection[str]) -> Iterator[str | Rejection]:
             if entry.is_dir(follow_symlinks=False):
                 if entry.path not in outputs:
                     waiting.append(name)
+            elif kind(entry.name) in UNREAD:
+                how = "save it as JPEG, PNG or TIFF, beside it or in its place"
+                yield refused(name, "a format that is not read", how)
             elif is_image(entry.name) or entry.is_symlink():
                 yield from judged(name, entry)
 
@@ -100,10 +107,14 @@ def judged(name: str, entry: os.DirEntry[str]) -> Iterator[str | Rejection]:
 
 def is_image(name: str) -> bool:
     """Tell whether a file is called as images are; blanks at the end are no matter."""
+    return kind(name) in SUFFIXES
+
+
+def kind(name: str) -> str:
+    """Give a file's suffix in small letters; a name that is hidden has none."""
     _, dot, suffix = name.rpartition(".")
-    return f"{dot}{suffix.strip().casefold()}" in SUFFIXES and not (
-        name.startswith(".") and name.count(".") == 1
-    )
+    hidden = name.startswith(".") and name.count(".") == 1
+    return "" if hidden else f"{dot}{suffix.strip().casefold()}"
 
 
 def why(problem: OSError) -> str:

@@ -264,6 +264,16 @@ def test_what_is_no_file_is_named_and_spoils_no_other(photos: Path) -> None:
     ]
 
 
+def test_pictures_of_other_formats_are_told_and_others_are_not(photos: Path) -> None:
+    for name in ("b/IMG_1.HEIC", "scan.pdf", "c.jfif", "notes.md", ".pdf", "list.csv"):
+        (photos / name).write_bytes(b"x")
+    made = indexed(photos, None)
+    assert made.photos == 4  # and one that a browser calls JFIF
+    unread = [one for one in made.rejections if one.reason.startswith("a format")]
+    assert [one.key for one in unread] == ["b/IMG_1.HEIC", "scan.pdf"]
+    assert all("save it as JPEG" in one.detail for one in unread)
+
+
 def test_a_folder_that_can_not_be_read_is_named(photos: Path) -> None:
     deep = photos
     while len(str(deep)) < 3890:  # with another name the system refuses it
