@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from pipelines.site import Folder, Foreign, recorded
+from pipelines.site import Folder, Foreign, altered, recorded
 from pipelines.view import site_of
 
 LAST: Final = ("index.html", "site.json", "tileset.json")  # what names all others
@@ -77,7 +77,8 @@ def copied(site: Path, names: Iterable[str], target: Path) -> int:
     """Copy files in order; return how many bytes they have.
 
     Raises:
-        Foreign: if the folder, or a file in the way, is another's.
+        Foreign: if the folder, or a file in the way, is another's, or one of the site
+            is damaged.
     """
     names = list(names)
     try:
@@ -87,6 +88,8 @@ def copied(site: Path, names: Iterable[str], target: Path) -> int:
     size = 0
     for name in names:
         data = (site / name).read_bytes()
+        if altered(name, data):
+            raise Foreign(f"{site / name} is damaged: run `nostalgin build` again")
         to.write(name, data)
         size += len(data)
     to.prune()

@@ -16,6 +16,8 @@ FOREVER: Final = (
     "/assets/",
     "/blocks/",
     "/far/",
+    "/finder/",
+    "/records/",
 )  # named by content: they never change
 LONGEST: Final = 1000  # letters of a path; ours have 90
 WAIT_S: Final = 30.0  # for a request, or for whoever reads the answer

@@ -32,9 +32,7 @@ from pipelines.build.report import (
 )
 from pipelines.build.rows import WriteTable
 from pipelines.build.tidied import tidied
-from pipelines.index import asked
 from pipelines.index.asked import Asked
-from pipelines.index.row import Row
 from pipelines.models import one_thread
 from pipelines.store import Damaged, Store, held
 from pipelines.store.refuse import drop_run
@@ -216,10 +214,9 @@ def published(
         )
         tell("held", words, shown=report.shown_share, before=better)
         return replace(report, held=True)
-    rows = [one for one in asked.rows(store, report.run) if isinstance(one, Row)]
     told = {"title": todo.title, "anchors": asked_for.anchors}
     told["trusting"] = asked_for.trusting
-    for doubt in site.publish(store, report.run, bench.versions, rows, **told):
+    for doubt in site.publish(store, report.run, bench.versions, **told):
         warned(tell, doubt)
     remember(store, report)
     if "://" in store.root:

@@ -58,18 +58,19 @@ def export(
     if "geojson" in wanted:
         makers.append(GeoJson(out / "geojson", site))
     for done, block in enumerate(site.blocks if makers else [], 1):
-        shown = site.shown(block)
+        shown, buildings = site.shown(block), site.buildings(block)
         for maker in makers:
-            maker.add(block, shown)
+            maker.add(block, shown, buildings)
         tell(str(block["name"]), done)
     counts = {maker.name: maker.close() for maker in makers}
     if told is not None:
         counts["prov"] = single(out / "prov", "provenance.json", told)
     if "iiif" in wanted:
-        canvases = [each for one in site.blocks for each in pictures(site, one)]
-        first = {one.name: one for one in reversed(canvases)}
-        ordered = [first[name] for name in dict.fromkeys(one.name for one in canvases)]
-        made = formats.presentation(base, title=site.title, canvases=ordered)
+        first: dict[str, Canvas] = {}
+        for each in (each for one in site.blocks for each in pictures(site, one)):
+            first.setdefault(each.name, each)
+        canvases = list(first.values())
+        made = formats.presentation(base, title=site.title, canvases=canvases)
         counts["iiif"] = single(out / "iiif", "manifest.json", made)
     return counts
 
@@ -121,11 +122,11 @@ class CityJson:
         names = [name for one in site.blocks for name in self._names(one)]
         self._folder, self._count = Folder(folder, names), len(names)
 
-    def add(self, block: Json, shown: Shown) -> None:
+    def add(self, block: Json, shown: Shown, buildings: list[Json]) -> None:
         """Write one block."""
         file, *images = self._names(block)
         ground = self._site.ground(block)
-        known = {str(one["id"]): one for one in block["buildings"]}
+        known = {str(one["id"]): one for one in buildings}
         lines = [formats.header(ground, title=f"{self._site.title} {shown.block}")]
         lines += [
             formats.feature(
@@ -164,7 +165,7 @@ class Obj:
         names = [self._name(one) for one in site.blocks]
         self._folder, self._count = Folder(folder, names), len(names)
 
-    def add(self, block: Json, shown: Shown) -> None:
+    def add(self, block: Json, shown: Shown, buildings: list[Json]) -> None:
         """Write one block."""
         told = {
             "block": shown.block,
@@ -173,7 +174,7 @@ class Obj:
             "scale": 1.0,
             "copyright": shown.copyright,
             **{key: shown.extras.get(key) for key in ("credit", "licence", "sources")},
-            "buildings": [one["id"] for one in block["buildings"]],
+            "buildings": [one["id"] for one in buildings],
         }
         name = self._name(block)
         data = formats.archive(shown, name.removesuffix(".zip"), told=told)
@@ -199,10 +200,10 @@ class GeoJson:
         self._site, self._folder = site, Folder(folder, [self.file])
         self._features: list[bytes] = []
 
-    def add(self, block: Json, shown: Shown) -> None:
+    def add(self, block: Json, shown: Shown, buildings: list[Json]) -> None:
         """Keep one block's footprints."""
         ground = self._site.ground(block)
-        known = {str(one["id"]): one for one in block["buildings"]}
+        known = {str(one["id"]): one for one in buildings}
         for shell in shown.shells:
             facts = attributes(shown, shell, known.get(shell.name, {}))
             made = formats.footprint(shell, ground, attributes=facts)
@@ -219,7 +220,7 @@ class GeoJson:
 def pictures(site: Published, block: Json) -> list[Canvas]:
     """List the photographs of a block that the site has pictures of."""
     made = []
-    for building in block["buildings"]:
+    for building in site.buildings(block):
         for photo in building.get("photos", ()):
             file = photo.get("file")
             if not file or Path(file).suffix not in MIMES:

@@ -7,9 +7,10 @@ from typing import Any, Final
 
 from nostalgin_core import city, formats
 from pipelines import bounded
-from pipelines.site import inside
+from pipelines.site import altered, inside
 
 SITE: Final = "site"
+EARLIER: Final = "it was written by an earlier version, all buildings in one file"
 
 Json = dict[str, Any]
 
@@ -38,8 +39,24 @@ class Published:
 
     @property
     def blocks(self) -> list[Json]:
-        """List what is known of its blocks."""
+        """List the headers of its blocks."""
         return self.record["blocks"]
+
+    def buildings(self, block: Json) -> list[Json]:
+        """Read what is known of a block's buildings.
+
+        Raises:
+            Unexportable: if its record is gone, or is not the one that was written.
+        """
+        path = self.file(block["record"])
+        try:
+            data = bounded.read(path, bounded.TABLE_BYTES)
+        except OSError as problem:
+            why = problem.strerror
+            raise Unexportable(f"{path}: {why}; build the city again") from problem
+        if altered(block["record"], data):
+            raise Unexportable(f"{path} is damaged; build the city again")
+        return json.loads(data)["buildings"]
 
     def file(self, name: str) -> Path:
         """Find a file that the record names, inside the site.
@@ -90,11 +107,10 @@ def published(folder: Path) -> Published:
         raise Unexportable(f"{folder} holds no site: run `nostalgin build {folder}`")
     try:
         record = json.loads(bounded.read(path, bounded.TABLE_BYTES))
-        frames = [
-            (one["frame"], one["uri"], one["buildings"]) for one in record["blocks"]
-        ]
+        frames = [(one["frame"], one["uri"], one["record"]) for one in record["blocks"]]
     except (OSError, ValueError, LookupError, TypeError, RecursionError) as problem:
-        words = f"{path}: {problem}: `nostalgin build {folder}` writes it anew"
+        why = EARLIER if isinstance(problem, KeyError) else str(problem)
+        words = f"{path}: {why}: `nostalgin build {folder}` writes it anew"
         raise Unexportable(words) from problem
     if not frames:
         raise Unexportable(f"{path} shows no block")

@@ -67,9 +67,8 @@ def again(before: Published, tell: Tell) -> None:
             pass  # each is there, and whole
     for path in gone(before, versions):
         raise Unkept(f"run {run} can't be shown: {path} is gone; {REMEDY}")
-    rows = [one for one in asked.rows(store, run) if isinstance(one, Row)]
     told = {"title": str(before.told.get("title", "")), "anchors": anchors(before)}
-    for doubt in site.publish(store, run, versions, rows, **told):
+    for doubt in site.publish(store, run, versions, **told):
         tell("warning", f"warning: {doubt}", warning=doubt)
 
 

@@ -5,14 +5,16 @@ Open `publish` first.
 """
 
 from pipelines.site.folder import Folder, Foreign, inside, recorded
+from pipelines.site.naming import altered, safe
 from pipelines.site.publish import claim, damaged, publish
 from pipelines.site.record import credited, record
-from pipelines.site.site import ViewerMissingError, safe, thumbnail
+from pipelines.site.site import ViewerMissingError, thumbnail
 
 __all__ = [
     "Folder",
     "Foreign",
     "ViewerMissingError",
+    "altered",
     "claim",
     "credited",
     "damaged",

@@ -1,15 +1,14 @@
 """Where a run's blocks lie, and how that is known."""
 
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from nostalgin_core import city
+from nostalgin_core.records import Front
 from pipelines.index import Anchors
-from pipelines.index.row import Row
 
 Json = dict[str, Any]
 CENTIMETRE = 2  # digits
@@ -26,22 +25,8 @@ class Placing:
     notes: tuple[str, ...]  # what is doubtful, with the remedy
 
 
-def placing(
-    records: Sequence[Mapping[str, Any]], rows: Sequence[Row], anchors: Anchors
-) -> Placing:
+def placing(plots: Sequence[city.Plot], anchors: Anchors) -> Placing:
     """Place the blocks by what is told of them, else by the streets that they share."""
-    fronts: dict[str, Json] = defaultdict(dict)
-    for row in rows:
-        if row.front is not None:
-            fronts[row.front.block].setdefault(row.front.front_id, row.front)
-    plots = [
-        city.plot(
-            record["block"],
-            [np.array(outline) for outline in record["outline_m"]],
-            list(fronts[record["block"]].values()),
-        )
-        for record in records
-    ]
     found = city.anchored(plots, anchors.of, widths=anchors.widths_m)
     spots = {} if found.plane is None else city.on_globe(found.plane, found.moves)
     standing = city.overlaps(plots, found.moves)
@@ -52,6 +37,15 @@ def placing(
     ]
     told = [row_of(one, found, spots.get(one.block)) for one in plots]
     return Placing(found.moves, spots, found.origin, tuple(told), tuple(notes))
+
+
+def plot_of(record: Mapping[str, Any], fronts: Iterable[Front]) -> city.Plot:
+    """Give the ground of a block; of what is told of a front the first counts."""
+    first: dict[str, Front] = {}
+    for front in fronts:
+        first.setdefault(front.front_id, front)
+    outlines = [np.array(outline) for outline in record["outline_m"]]
+    return city.plot(record["block"], outlines, list(first.values()))
 
 
 def row_of(

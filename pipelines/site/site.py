@@ -4,9 +4,11 @@
     blocks/<block>-<sha8>.glb      models, named by content
     far/<block>-<sha8>.glb         the same with fewer texels, and volumes of districts
     photos/<key>.webp              thumbnails of the photographs
+    records/<block>-<sha8>.json    what is known of a block's buildings (`parts`)
+    finder/<number>-<sha8>.json    buildings to search in
     tileset-<sha8>.json            3D Tiles, as site.json names them
     tiles-<sha16>.json             its districts, where there are many
-    site.json                      what is known of blocks and buildings
+    site.json                      a header a block, which names its record and models
     tileset.json                   the same 3D Tiles, under the name that others know
 
 What others name is named by its content and comes first, and stays until the city after
@@ -18,12 +20,10 @@ one city or the other, never half of both. Nothing is removed that we did not wr
 import dataclasses
 import hashlib
 import io
-import json
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
@@ -33,17 +33,19 @@ from PIL import Image
 from nostalgin_core import city
 from nostalgin_core.arrays import Gray
 from nostalgin_core.model import legend
+from pipelines.site.aside import Aside
 from pipelines.site.folder import RECORD, Folder, recorded
+from pipelines.site.naming import SUFFIXES, Data, content, digest, safe, suffix
+from pipelines.site.parts import Parts, text
 
 VIEWER: Final = Path(__file__).with_name("viewer_dist")
 THUMBNAIL_PX: Final = 1600  # a screen's height, for the view from where it was taken
-NAMELESS: Final = "other"  # what has no harmless letters, as a street in Kyoto
-SUFFIXES: Final = ((b"\xff\xd8\xff", ".jpg"), (b"\x89PNG\r\n\x1a\n", ".png"))
 
+CENTIMETRE: Final = 2  # digits
 SWAPPED: Final = ("site.json", "tileset.json")  # last, in this order
 
 Json = dict[str, Any]
-Data = bytes | Callable[[], bytes]  # or how to read it, one block at a time
+Record = Mapping[str, Any]
 
 
 class ViewerMissingError(FileNotFoundError):
@@ -58,13 +60,14 @@ class ViewerMissingError(FileNotFoundError):
 class BlockModel:
     """One block's model, what is known of it, and where it lies.
 
-    `record` is what `record.record` writes: `block`, `outline_m` and `buildings`,
-    whose `photos` name keys of the photographs. It may carry more, which is kept.
+    `record` is what `record.record` writes, or how to read it: `block`, `outline_m` and
+    `buildings`, whose `photos` name keys of the photographs. What it carries beside the
+    buildings is told by site.json for all blocks at once.
     """
 
     name: str
     glb: Data
-    record: Mapping[str, Any]
+    record: Record | Callable[[], Record]
     low_m: tuple[float, float, float]  # the model's bounds: east, north, up
     high_m: tuple[float, float, float]
     origin_m: tuple[float, float] = (0.0, 0.0)  # east, north of the city's origin
@@ -106,28 +109,79 @@ def assemble(
     models, coarse = zip(
         *(_named(one, trusting=trusting) for one in blocks), strict=True
     )
-    files = {key: _pictured(key, photos, standing) for key in photos}
+    files = Pictures(photos, standing)
     tiles = [_tile(*each) for each in zip(models, blocks, coarse, strict=True)]
     tree = city.tree(tiles, place=place)
-    tileset = _text(tree.tileset)
+    tileset = text(tree.tileset)
     named = f"tileset-{hashlib.sha256(tileset).hexdigest()[:8]}.json"
-    each = zip(models, blocks, coarse, tree.frames, strict=True)
-    record = _record(title, named, place, [_block(*one, files) for one in each])
-    far = zip(coarse, blocks, strict=True)
-    pages = {
-        "index.html": index.read_bytes(),
-        named: tileset,
-        **dict(zip(SWAPPED, (_text(record), tileset), strict=True)),
-    }
-    named_files = {
-        **_assets(viewer),
-        **{name: partial(photos.__getitem__, key) for key, name in files.items()},
-        **{uri: one.glb for uri, one in zip(models, blocks, strict=True)},
-        **{uri: one.coarse for uri, one in far if one.coarse is not None},
-        **tree.files,
-        **pages,
-    }
-    _written(destination, named_files, standing & {*models, *coarse, *files.values()})
+    with Aside(destination.parent) as aside:
+        parts = Parts(aside)
+        each = zip(blocks, models, coarse, tree.frames, strict=True)
+        for one, uri, far, frame in each:
+            parts.add(_told(one, files), _header(one, uri, far, frame))
+        last = (text(_city(title, named, place) | parts.close()), tileset)
+        made = {
+            **_assets(viewer),
+            **dict(_models(zip(models, coarse, blocks, strict=True))),
+            **tree.files,
+            **parts.files,
+            "index.html": index.read_bytes(),
+            named: tileset,
+            **dict(zip(SWAPPED, last, strict=True)),
+        }
+        _written(destination, files, made, standing - {*parts.files, *tree.files})
+
+
+def _written(
+    destination: Path,
+    pictures: "Pictures",
+    files: Mapping[str, Data],
+    standing: AbstractSet[str],
+) -> None:
+    """Write files in their order, one at a time, and remove what is named no more.
+
+    Models and pictures that are `standing` are what they are to be.
+    """
+    site = Folder(destination, chain((name for _, name in pictures.each()), files))
+    for key, name in pictures.each():
+        if name not in standing:
+            site.write(name, pictures.photos[key])
+    for name, data in files.items():
+        if name not in standing or not name.startswith(("blocks/", "far/")):
+            site.write(name, content(data))
+    site.prune()
+
+
+class Pictures:
+    """The files of photographs, by their keys; what follows from a key is not held."""
+
+    def __init__(self, photos: Mapping[str, bytes], standing: AbstractSet[str]) -> None:
+        """Look at the first bytes of those that are not `standing`."""
+        self.photos = photos
+        named = ((key, _pictured(key, photos, standing)) for key in photos)
+        self._others = {k: name for k, name in named if name != _webp(k)}
+
+    def file(self, key: str) -> str | None:
+        """Name the file of a photo; None if there is none."""
+        return self._others.get(key, _webp(key)) if key in self.photos else None
+
+    def each(self) -> Iterator[tuple[str, str]]:
+        """Give all keys, and their files' names."""
+        return ((key, self._others.get(key, _webp(key))) for key in self.photos)
+
+
+def _city(title: str, tileset: str, place: city.Place | None) -> Json:
+    """Tell what is known of the city alone."""
+    told = {"title": title, "tileset": tileset, "legend": legend()}
+    return told if place is None else {**told, "place": dataclasses.asdict(place)}
+
+
+def _models(named: Iterable[tuple[str, str, BlockModel]]) -> Iterator[tuple[str, Data]]:
+    """Name the models' files, and how to read them."""
+    for fine, coarse, one in named:
+        yield fine, one.glb
+        if one.coarse is not None:
+            yield coarse, one.coarse
 
 
 def _sound(blocks: Sequence[BlockModel], viewer: Path) -> Path:
@@ -145,22 +199,6 @@ def _assets(viewer: Path) -> dict[str, Data]:
     """Name the viewer's files, and how to read them."""
     paths = sorted((viewer / "assets").iterdir())
     return {f"assets/{path.name}": path.read_bytes for path in paths}
-
-
-def _written(
-    destination: Path,
-    files: Mapping[str, Data],
-    standing: AbstractSet[str] = frozenset(),
-) -> None:
-    """Write files in their order, one at a time, and remove what is named no more.
-
-    Those that are `standing` are what they are to be.
-    """
-    site = Folder(destination, list(files))
-    for name, data in files.items():
-        if name not in standing:
-            site.write(name, content(data))
-    site.prune()
 
 
 def thumbnail(image: Gray, *, longest_px: int = THUMBNAIL_PX) -> bytes:
@@ -192,42 +230,16 @@ def _named(one: BlockModel, *, trusting: bool) -> tuple[str, str]:
     return model, f"far/{safe(one.name)}-{coarse}.glb"
 
 
+def _webp(key: str) -> str:
+    return f"photos/{safe(key)}.webp"
+
+
 def _pictured(key: str, photos: Mapping[str, bytes], standing: AbstractSet[str]) -> str:
     """Name a photo's small picture: as it stands there, else by its first bytes."""
     stem = f"photos/{safe(key)}"
     known = (stem + end for end in (".webp", *(end for _, end in SUFFIXES)))
     there = next((name for name in known if name in standing), None)
     return there or stem + suffix(photos[key])
-
-
-def digest(data: Data, sha256: str = "") -> str:
-    """Give a model's file name what changes with its content."""
-    return (sha256 or hashlib.sha256(content(data)).hexdigest())[:8]
-
-
-def content(data: Data) -> bytes:
-    """Give a model, which may have to be read first."""
-    return data() if callable(data) else data
-
-
-def safe(name: str) -> str:
-    """Turn any name into a file name; different names give different ones.
-
-    A harmless name stays as it is; another keeps its harmless letters and gets its
-    hash. None begins with a dot or a line, which hosts of sites leave out.
-    """
-    if re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", name):
-        return name
-    letters = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_")[:40] or NAMELESS
-    # a dot is in no harmless name, so that no other name can pose as this one
-    return f"{letters}.{hashlib.sha256(name.encode()).hexdigest()[:12]}"
-
-
-def suffix(data: bytes) -> str:
-    """Tell a picture's file suffix by its first bytes."""
-    if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
-        return ".webp"
-    return next((end for start, end in SUFFIXES if data.startswith(start)), ".bin")
 
 
 def _tile(uri: str, one: BlockModel, coarse: str) -> city.Tile:
@@ -245,26 +257,21 @@ def _tile(uri: str, one: BlockModel, coarse: str) -> city.Tile:
     )
 
 
-def _record(title: str, tileset: str, place: city.Place | None, blocks: list) -> Json:
-    told = {} if place is None else {"place": dataclasses.asdict(place)}
-    named = {"title": title, "tileset": tileset, "legend": legend()}
-    return {**named, **told, "blocks": blocks}
+def _header(one: BlockModel, uri: str, far: str, frame: Any) -> Json:
+    top_m = round(float(one.high_m[2]), CENTIMETRE)
+    return {"name": one.name, "uri": uri, "coarse": far, "frame": frame, "top_m": top_m}
 
 
-def _block(
-    uri: str, block: BlockModel, far: str, frame: Any, files: Mapping[str, str]
-) -> Json:
+def _told(block: BlockModel, files: Pictures) -> Json:
+    """Give a block's record, whose photos name their small pictures."""
+    record = block.record() if callable(block.record) else block.record
     buildings = [
-        {**building, "photos": [_photo(one, files) for one in building["photos"]]}
-        for building in block.record["buildings"]
+        {
+            **building,
+            "photos": [
+                {**one, "file": files.file(one["key"])} for one in building["photos"]
+            ],
+        }
+        for building in record["buildings"]
     ]
-    told = {"name": block.name, "uri": uri, "buildings": buildings}
-    return {**block.record, **told, "coarse": far, "frame": frame}
-
-
-def _photo(photo: Mapping[str, Any], files: Mapping[str, str]) -> Json:
-    return {**photo, "file": files.get(photo["key"])}
-
-
-def _text(value: Json) -> bytes:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
+    return {**record, "buildings": buildings}

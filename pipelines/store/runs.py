@@ -44,7 +44,7 @@ TEXT, NUMBER, COUNT = pa.string(), pa.float64(), pa.int64()
 NUMBERS: Final = pa.list_(pa.float64())
 Part = tuple[int, int]  # which, from 0, of how many
 PART: Final = 20_000  # rows of a manifest for each part of a run's tables
-BATCH: Final = 1024  # rows that are written out as plain values at once
+BATCH: Final = 1024  # rows that are written or read as plain values at once
 
 PHOTOS: Final = columns(
     name=TEXT,
@@ -250,7 +250,8 @@ def each_part(
 def read_rows(store: Store, run: str, name: str) -> Iterator[dict[str, Any]]:
     """Read a run's table row by row, holding one part."""
     for table in each_part(store, run, name):
-        yield from table.to_pylist()
+        for batch in table.to_batches(max_chunksize=BATCH):
+            yield from batch.to_pylist()
 
 
 def read_table(store: Store, run: str, name: str) -> list[dict[str, Any]]:

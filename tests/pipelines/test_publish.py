@@ -1,3 +1,4 @@
+import hashlib
 import json
 from pathlib import Path
 
@@ -106,3 +107,21 @@ def test_a_site_with_a_hole_is_not_published(city: Path, tmp_path: Path) -> None
 
 def test_what_names_other_files_comes_last() -> None:
     assert publish.ordered(FILES)[-3:] == list(publish.LAST)
+
+
+def test_a_record_that_is_damaged_is_named_and_nothing_changes_for_visitors(
+    city: Path, tmp_path: Path
+) -> None:
+    data = b'{"buildings": []}'
+    name = f"records/1-{hashlib.sha256(data).hexdigest()[:8]}.json"
+    built(city, {**FILES, name: data})
+    public = tmp_path / "public"
+    publish.publish(city, public)
+    before = there(public)
+    assert before[name] == data
+    (city / "site" / name).write_bytes(data[:5])
+    for folder in (public, tmp_path / "new"):
+        with pytest.raises(Foreign, match=rf"{name} is damaged: run `nostalgin build`"):
+            publish.publish(city, folder)
+    assert there(public) == before
+    assert not (tmp_path / "new").exists()

@@ -1,16 +1,14 @@
-// The city: its records (site.json) and its models (3D Tiles), in one level frame.
+// The city: its list of blocks (site.json), their records and models (3D Tiles), in one level frame.
 //
 // The frame is the first block's: x east, y up, z south, in metres.
 
 import { Group, Matrix4, OrthographicCamera, Sphere, Vector3 } from 'three';
-import { TilesRenderer } from '3d-tiles-renderer';
-import { GLTFExtensionsPlugin } from '3d-tiles-renderer/plugins';
 import { MeshBVH } from 'three-mesh-bvh';
 
-import { bound } from './budget.js';
 import { keysOf } from './evidence.js';
 import { reader, united } from './model.js';
-import { EvidenceVariant, surface, unlock } from './paint.js';
+import { surface, unlock } from './paint.js';
+import { Records } from './records.js';
 import { survey } from './survey.js';
 
 const Y_UP_FROM_Z_UP = new Matrix4().makeRotationX(-Math.PI / 2);
@@ -18,7 +16,7 @@ const NEAR_M = 90; // blocks this close are loaded, whichever way the walker loo
 
 export class City {
   /** @param record site.json; @param tiles the running TilesRenderer */
-  constructor(record, tiles) {
+  constructor(record, tiles, base = '') {
     this.record = record;
     this.tiles = tiles;
     this.keys = keysOf(record.legend); // colours of the evidence images' codes
@@ -27,18 +25,16 @@ export class City {
     this.group.add(tiles.group);
     this.frames = new Map(); // block name -> Matrix4, city_from_block (y up)
     this.walls = new Set(); // meshes that can be walked into and clicked
-    this.buildings = new Map(); // building id -> { record, block, shape }
+    this.records = new Records(record.blocks, record.elsewhere, base);
+    this.contents = new Map(record.blocks.flatMap((block) => [[block.uri, block], [block.coarse, block]]));
+    this.entering = new WeakMap(); // a model that is not in the scene yet -> its block's buildings
+    this.failed = new Set(); // blocks, and addresses of what else can't be had
     this.errors = [];
     this.onBlock = () => {};
     this.onGone = () => {};
     this.standing = new Map(); // block -> its meshes that are loaded
     this.extents = []; // of blocks, on the ground, for `near`
     this.nearby = new OrthographicCamera(-NEAR_M, NEAR_M, NEAR_M, -NEAR_M, 1, 2000);
-    for (const block of record.blocks) {
-      for (const building of block.buildings) {
-        this.buildings.set(String(building.id), { record: building, block, shape: null, detail: 0 });
-      }
-    }
     this.camera = null; // whose view is loaded, see `all`
     tiles.loadAncestors = tiles.loadSiblings = false; // at first only what one stands before
     tiles.setCamera(this.nearby);
@@ -46,10 +42,51 @@ export class City {
     tiles.addEventListener('load-model', ({ scene, tile }) => this.#enter(scene, tile));
     tiles.addEventListener('dispose-model', ({ scene }) => this.#leave(scene));
     this.onError = () => {};
-    tiles.addEventListener('load-error', ({ error }) => {
+    this.holds = () => []; // ids of buildings whose records stay
+    tiles.addEventListener('load-error', ({ error, tile }) => {
       this.errors.push(String(error));
+      this.failed.add(this.#blockOf(tile) ?? tile?.content?.uri);
       this.onError(error);
     });
+    this.#accompany(tiles);
+  }
+
+  /** Sees to it that a block's records come with its model, and are there before it. */
+  #accompany(tiles) {
+    tiles.addEventListener('tile-download-start', ({ tile }) => {
+      const block = this.#blockOf(tile);
+      if (block) this.records.read(block).catch(() => {}); // the model's turn comes to say so
+    });
+    tiles.registerPlugin({
+      name: 'NOSTALGIN_records',
+      processTileModel: async (scene, tile) => {
+        const block = this.#blockOf(tile);
+        if (block) this.entering.set(scene, await this.records.read(block));
+      },
+    });
+  }
+
+  /** The block that a tile shows; none of a district's volumes. */
+  #blockOf(tile) {
+    return this.contents.get(tile?.content?.uri?.split('/').slice(-2).join('/'));
+  }
+
+  /** The buildings whose records are here, by their ids. */
+  get buildings() {
+    return this.records.buildings;
+  }
+
+  /** The building of an id, once it is known; null where the city has none. */
+  async find(id) {
+    const found = await this.records.find(id);
+    this.tidy();
+    return found;
+  }
+
+  /** Lets go of what is known of blocks long left. */
+  tidy() {
+    const held = new Set(this.holds().map((id) => this.buildings.get(id)?.block));
+    this.records.prune((block) => this.standing.has(block) || held.has(block));
   }
 
   /** From now on also loads what `camera` sees, the coarse before the fine. */
@@ -133,12 +170,16 @@ export class City {
     });
   }
 
-  /** The buildings of blocks that reach within `reach` metres of [x, z]. */
-  near([x, z], reach) {
+  /** The blocks that reach within `reach` metres of [x, z]. */
+  about([x, z], reach) {
     const within = ({ low, high }) => !(x < low[0] - reach || x > high[0] + reach
       || z < low[1] - reach || z > high[1] + reach);
-    return this.extents.filter((one) => within(one))
-      .flatMap(({ block }) => block.buildings.map(({ id }) => this.buildings.get(String(id))));
+    return this.extents.filter((one) => within(one)).map(({ block }) => block);
+  }
+
+  /** Their buildings, as far as these are known by now. */
+  near(at, reach) {
+    return this.about(at, reach).flatMap((block) => this.records.of(block));
   }
 
   /** A building's front by its footprint alone, as `survey` tells walls; null where nothing is known. */
@@ -150,24 +191,21 @@ export class City {
     return { a, b, out: [-dz / length, dx / length], bottom: 0, top: record.height_m ?? 14, kind: 'plain' };
   }
 
-  /** Where a building stands, [x, z], as far as that is known; or null. */
-  placeOf(found) {
-    const wall = this.wallOf(found);
-    if (wall) return [(wall.a[0] + wall.b[0]) / 2, (wall.a[1] + wall.b[1]) / 2];
-    const { block } = found;
-    const known = this.frames.has(block.name) && block.outline_m?.length;
-    return known ? this.placed(block, block.outline_m[0])[0] : null;
+  /** Where a stop of the city's tour is, [x, z]; or null. */
+  placeOf({ block, at_m: at }) {
+    return this.frames.has(block) ? this.placed({ name: block }, [at])[0] : null;
   }
 
-  /** The middle of the first block, as far as the tileset tells it. */
+  /** The middle of the first block that can be had, as far as the tileset tells it. */
   middle() {
     const sphere = new Sphere();
     this.tiles.getBoundingSphere(sphere);
     sphere.applyMatrix4(this.tiles.group.matrixWorld);
-    const first = this.record.blocks.find((block) => this.frames.has(block.name) && block.outline_m?.length);
-    if (!first) return sphere.center;
-    const [x, z] = this.placed(first, first.outline_m[0])[0];
-    return new Vector3(x, 0, z);
+    const first = this.record.blocks.find((block) => this.frames.has(block.name) && block.outline_m?.length
+      && !this.failed.has(block));
+    const { center } = sphere;
+    const [x, z] = first ? this.placed(first, first.outline_m[0])[0] : [center.x, center.z];
+    return { x, z };
   }
 
   /** An outline of a block, as rows of [x, z] in the city's frame. */
@@ -187,6 +225,7 @@ export class City {
   }
 
   #enter(scene, tile) {
+    if (this.entering.has(scene)) this.records.keep(this.#blockOf(tile), this.entering.get(scene));
     place(scene, this.tiles.group.matrixWorld);
     const assumed = (id) => Boolean(this.buildings.get(id)?.record.assumed);
     const mesh = united(scene, assumed);
@@ -226,8 +265,9 @@ export class City {
       for (const [block, meshes] of this.standing) {
         if (!meshes.delete(mesh) || meshes.size) continue;
         this.standing.delete(block);
-        for (const { id } of block.buildings) Object.assign(this.buildings.get(String(id)), { shape: null, detail: 0 });
+        for (const found of this.records.of(block)) Object.assign(found, { shape: null, detail: 0 });
         this.onGone(block);
+        this.tidy();
       }
       mesh.geometry.dispose();
       mesh.material.dispose();
@@ -235,29 +275,6 @@ export class City {
       mesh.userData.evidence?.image.close?.();
     });
   }
-}
-
-/** Reads site.json and starts to load the tileset that it names, both beside the page. */
-export async function open(base = '', tell = () => {}) {
-  tell('the list of buildings');
-  const response = await fetch(`${base}site.json`);
-  if (!response.ok) throw new Error(`site.json: ${response.status}`);
-  const record = await response.json();
-  const tiles = new TilesRenderer(new URL(`${base}${record.tileset}`, location.href).href);
-  tiles.registerPlugin(
-    new GLTFExtensionsPlugin({ plugins: [(parser) => new EvidenceVariant(parser)] }),
-  );
-  bound(tiles);
-  const city = new City(record, tiles);
-  const rooted = new Promise((resolve, reject) => {
-    tiles.addEventListener('load-root-tileset', resolve, { once: true });
-    tiles.addEventListener('load-error', ({ error, tile }) => tile || reject(error));
-  });
-  tell('the plan of the city');
-  tiles.update();
-  await rooted;
-  city.arrange(tiles.rootTileset.root);
-  return city;
 }
 
 /** Sets world matrices of a model that is loaded but not yet in the scene. */

@@ -10,17 +10,6 @@ export function web(address) {
   }
 }
 
-/** Everybody who is credited in a city, the most often named first. */
-export function everybody(blocks) {
-  const count = new Map();
-  for (const { buildings } of blocks) {
-    for (const { photos } of buildings) {
-      for (const { credit } of photos ?? []) if (credit) count.set(credit, (count.get(credit) ?? 0) + 1);
-    }
-  }
-  return [...count].sort((p, q) => q[1] - p[1]).map(([credit]) => credit);
-}
-
 /** A link that opens elsewhere, or the words alone where the address is no web page's. */
 export function link(words, address) {
   const href = web(address);
@@ -31,9 +20,9 @@ export function link(words, address) {
 }
 
 export class Credit {
-  constructor(element, blocks) {
+  /** `all` who are credited most often in the city, as far as site.json names them. */
+  constructor(element, all) {
     this.element = element;
-    const all = everybody(blocks);
     this.others = all.length > 2 ? `${all.slice(0, 2).join(', ')} and others` : all.join(', ');
     this.show(null);
   }

@@ -7,7 +7,7 @@ import { even } from './lens.js';
 import { contains } from './outline.js';
 import { fromHash } from './pose.js';
 import { Then, photoOf } from './then.js';
-import { Tour, route, worth } from './tour.js';
+import { Tour, route } from './tour.js';
 import { poseBefore } from './vantage.js';
 import { Flight } from './view.js';
 import { nameOf } from './words.js';
@@ -21,16 +21,17 @@ export const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches
 export class Guide {
   constructor(page) {
     this.page = page;
+    page.city.holds = () => [page.chosen, this.awaited].filter(Boolean);
     this.flight = new Flight();
     this.awaited = null; // the building to stand before once its model is there
+    this.sought = null; // the building whose record is awaited
     this.then = new Then(
       { picture: $('picture'), bar: $('then') },
       { onSlide: () => page.wake(), onLeave: () => this.back() },
     );
     this.tour = new Tour($('tour'), {
       onVisit: ({ id }) => {
-        this.visit(id, { fly: true });
-        page.mark(id);
+        this.seek(id, { fly: true, mark: true });
       },
       onStop: () => page.press('KeyR', false),
     });
@@ -40,6 +41,27 @@ export class Guide {
   #depart(seconds = FLIGHT_S, onArrival = () => {}) {
     this.page.wake();
     this.flight.depart(this.page.view(), calm() ? 0 : seconds, onArrival);
+  }
+
+  /** Visits a building of which nothing may be known yet; whoever moves meanwhile stays. */
+  seek(id, { mark = false, ...how } = {}) {
+    const { page } = this;
+    const go = () => this.visit(id, how) && mark && page.mark(id);
+    this.sought = id;
+    if (page.city.buildings.has(id)) go();
+    else page.city.find(id).then(() => this.sought === id && go(), (error) => page.say(error.message));
+  }
+
+  /** Follows a link, of whose building nothing may be known yet; tells whether it leads anywhere. */
+  async open(hash) {
+    const { page } = this;
+    const { building } = fromHash(hash);
+    this.sought = building;
+    const trouble = building === null ? null : await page.city.find(building).then(() => null, ({ message }) => message);
+    if (this.sought !== building) return false;
+    const leads = this.follow(hash);
+    if (trouble) page.say(trouble);
+    return leads;
   }
 
   /** Stands before a building, by its footprint until its model is there. */
@@ -59,8 +81,8 @@ export class Guide {
 
   /** A block's models have come: whoever waited for one of its buildings stands there anew. */
   came(block) {
-    const { awaited } = this;
-    if (!awaited || !block.buildings.some(({ id }) => String(id) === awaited)) return;
+    const { awaited, page } = this;
+    if (!awaited || page.city.buildings.get(awaited)?.block !== block) return;
     if (this.wanted) this.enter(awaited, this.wanted);
     else this.visit(awaited);
   }
@@ -138,9 +160,7 @@ export class Guide {
       return;
     }
     const { x, z } = page.walker.pose;
-    const stops = [...page.city.buildings].map(([id, found]) => ({
-      id, name: nameOf(found.record), worth: worth(found.record), at: page.city.placeOf(found),
-    })).filter(({ at }) => at);
+    const stops = (page.city.record.tour ?? []).map((stop) => ({ ...stop, at: page.city.placeOf(stop) })).filter(({ at }) => at);
     tour.start(route(stops, [x, z]), calm());
     if (tour.on) page.press('KeyR', true);
     else page.say('No photograph of this city can be shown.');
@@ -150,7 +170,7 @@ export class Guide {
   moved() {
     this.tour.stop();
     this.back();
-    this.awaited = this.wanted = null;
+    this.awaited = this.wanted = this.sought = null;
   }
 
   /** Shows what a link names: a pose, a building, a photograph, or several; tells whether it leads anywhere. */

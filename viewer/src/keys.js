@@ -45,6 +45,6 @@ export function listen(page) {
     document.body.classList.toggle('locked', Boolean(document.pointerLockElement));
   });
   addEventListener('resize', () => page.resize());
-  addEventListener('hashchange', () => page.guide.follow(location.hash));
+  addEventListener('hashchange', () => page.guide.open(location.hash));
 }
 

@@ -1,10 +1,11 @@
 // Opens the city, and lets tests and scripts drive its page through window.nostalgin.
 
 import { api } from './api.js';
-import { open } from './city.js';
 import { fillLegend } from './legend.js';
 import { Loading } from './loading.js';
+import { open } from './opening.js';
 import { Page } from './page.js';
+import { Unreadable } from './records.js';
 import { Stage } from './stage.js';
 
 const loading = new Loading(document.getElementById('notice'));
@@ -12,7 +13,7 @@ const loading = new Loading(document.getElementById('notice'));
 function complain(error) {
   loading.end();
   const text = document.createElement('p');
-  const missing = /json|404|Failed to fetch/.test(String(error));
+  const missing = !(error instanceof Unreadable) && /json|404|Failed to fetch/.test(String(error));
   text.textContent = missing
     ? 'There is no city here yet. Run “nostalgin build CITY”, then “nostalgin view CITY”.'
     : `The city could not be shown: ${error.message ?? error}`;

@@ -12,6 +12,7 @@ import { Minimap } from './minimap.js';
 import { shown } from './paint.js';
 import { Panel } from './panel.js';
 import { toHash } from './pose.js';
+import { Unreadable } from './records.js';
 import { shoot } from './shot.js';
 import { faced, picked, where } from './sight.js';
 import { bestAzimuth, corners, frontFor, homeIn } from './vantage.js';
@@ -35,14 +36,14 @@ export class Page {
     this.walker = new Walker();
     this.bird = new Bird();
     this.minimap = new Minimap($('plan').firstElementChild);
-    this.credit = new Credit($('credit'), city.record.blocks);
+    this.credit = new Credit($('credit'), city.record.credits ?? []);
     this.guide = new Guide(this);
     this.panel = new Panel($('panel'), {
       onClose: () => this.guide.then.on || this.mark(null),
       onVisit: (record) => this.guide.visit(String(record.id)),
       onThen: (record, key) => this.guide.enter(String(record.id), key),
     });
-    this.finder = new Finder($('finder'), city, (id) => this.guide.visit(id, { show: true }));
+    this.finder = new Finder($('finder'), city.record, (id) => this.guide.seek(id, { show: true }));
     this.flying = false;
     this.height = 0; // 0 on foot, 1 in the air
     this.fov = this.stage.lens.fov;
@@ -64,9 +65,8 @@ export class Page {
     const { city, stage } = this;
     listen(this);
     this.resize();
-    const { x, z } = city.middle();
-    this.walker.pose = { x, z, yaw: 0, pitch: 0 };
-    const linked = location.hash.length > 1 && this.guide.follow(location.hash);
+    this.walker.pose = { ...city.middle(), yaw: 0, pitch: 0 };
+    const linked = location.hash.length > 1 && await this.guide.open(location.hash);
     const { near, far } = city.ground(this.walker.feet, PAVED_M);
     stage.paveAll(near);
     const settled = this.firstBlock(linked);
@@ -91,8 +91,7 @@ export class Page {
     const standing = [];
     return new Promise((resolve, reject) => {
       city.onBlock = (block) => {
-        const shapes = block.buildings.map(({ id }) => city.buildings.get(String(id)).shape);
-        stage.settle(block, shapes.filter(Boolean));
+        stage.settle(block, city.records.of(block).map(({ shape }) => shape).filter(Boolean));
         this.inscribe(block);
         this.guide.came(block);
         this.wake();
@@ -101,8 +100,11 @@ export class Page {
       };
       city.onGone = (block) => stage.unsettle(block);
       city.onError = (error) => {
+        if (error instanceof Unreadable) this.say(error.message);
         if (standing.length) resolve(standing[0]);
-        else if (city.errors.length >= city.record.blocks.length) reject(error);
+        else if (city.failed.size >= city.record.blocks.length) reject(error);
+        else if (any) resolve(first); // it stands nowhere
+        else this.walker.pose = { ...this.walker.pose, ...city.middle() }; // to the next
       };
     });
   }
@@ -110,8 +112,7 @@ export class Page {
   /** Writes the names of a block's streets, told by buildings that stand on one only. */
   inscribe(block) {
     const streets = new Map();
-    for (const { id, street, fronts } of block.buildings) {
-      const { shape } = this.city.buildings.get(String(id));
+    for (const { shape, record: { street, fronts } } of this.city.records.of(block)) {
       if (!shape || !street || (fronts ?? [0]).length !== 1) continue;
       streets.set(street, [...(streets.get(street) ?? []), frontFor(this.city, shape)]);
     }

@@ -1,10 +1,4 @@
-// A tour: the best-photographed fronts, in an order that makes a short walk.
-
-/** How much a building has to show: photographed square metres, great ones counted less. */
-export function worth({ assumed, photos, photographed_share: share, width_m: width, height_m: height }) {
-  if (assumed || !photos?.some(({ used, file }) => used && file)) return 0;
-  return (share ?? 0) ** 2 * Math.sqrt(Math.min(width, 40) * Math.min(height, 60));
-}
+// A tour: the best-photographed fronts, as site.json names them, in an order that makes a short walk.
 
 /**
  * The best `most` of `stops` (`{ id, worth, at: [x, z] }`), from the one nearest to `from`

@@ -18,8 +18,7 @@ ray.firstHitOnly = true;
 
 /** Where a walk begins: along the row of a block that shows most photographs. */
 export function homeIn(city, block, otherwise) {
-  const known = block.buildings.map(({ id }) => city.buildings.get(String(id)));
-  const walls = known.flatMap(({ shape }) => shape?.walls ?? []).filter((wall) => clear(city, wall));
+  const walls = city.records.of(block).flatMap(({ shape }) => shape?.walls ?? []).filter((wall) => clear(city, wall));
   const [best] = rows(walls.filter(({ kind }) => kind === 'own'));
   const row = best ?? rows(walls)[0];
   return row ? along(row, 0.7 * room(city, row[0])) : otherwise;
@@ -51,10 +50,14 @@ export function bestAzimuth(city, yaw) {
 /** Points that the bird's view has to hold: all about a place, whether its models have come or not. */
 export function corners(city, { min, max }, { x, z }) {
   const points = [];
-  for (const found of city.near([x, z], ABOUT_M)) {
-    for (const { a, top, bottom } of found.shape?.walls ?? [city.wallOf(found)].filter(Boolean)) {
-      points.push(new Vector3(a[0], bottom, a[1]), new Vector3(a[0], top, a[1]));
+  const upright = ([u, v], bottom, top) => points.push(new Vector3(u, bottom, v), new Vector3(u, top, v));
+  for (const block of city.about([x, z], ABOUT_M)) {
+    const known = city.records.of(block);
+    for (const found of known) {
+      for (const { a, top, bottom } of found.shape?.walls ?? [city.wallOf(found)].filter(Boolean)) upright(a, bottom, top);
     }
+    if (known.length) continue; // else as high as it may be
+    for (const ring of block.outline_m ?? []) for (const at of city.placed(block, ring)) upright(at, 0, block.top_m ?? 0);
   }
   return points.length ? points : [min.clone(), max.clone()];
 }

@@ -1,18 +1,16 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { everybody, web } from '../src/credit.js';
+import { web } from '../src/credit.js';
 import { nearestName, repeated, spread } from '../src/labels.js';
 import { upright } from '../src/minimap.js';
 import { along } from '../src/props.js';
 import { nameFor } from '../src/shot.js';
 import { where } from '../src/sight.js';
-import { route, worth } from '../src/tour.js';
+import { route } from '../src/tour.js';
 import { before } from '../src/walker.js';
 
 const stop = (id, x, value) => ({ id, worth: value, at: [x, 0] });
-const PHOTO = { used: true, file: 'photos/a.webp' };
-const SEEN = { photos: [PHOTO], photographed_share: 0.9, width_m: 10, height_m: 15 };
 
 test('a tour goes on to the nearest of the best', () => {
   const stops = [stop('far', 100, 5), stop('near', 10, 3), stop('poor', 1, 0.1), stop('mid', 40, 4), stop('none', 2, 0)];
@@ -27,24 +25,11 @@ test('a tour is the same whatever the order of the buildings', () => {
   assert.equal(new Set(route(stops, [5, 0], 12)).size, 12);
 });
 
-test('what nobody photographed is not worth a stop', () => {
-  assert.equal(worth({ ...SEEN, assumed: true }), 0);
-  assert.equal(worth({ ...SEEN, photos: [] }), 0);
-  assert.equal(worth({ ...SEEN, photos: [{ ...PHOTO, used: false }] }), 0);
-  assert.ok(worth(SEEN) > worth({ ...SEEN, photographed_share: 0.5 }));
-  assert.ok(worth({ ...SEEN, height_m: 30 }) > worth(SEEN));
-});
-
 test('only web pages are linked to', () => {
   assert.equal(web('https://archive.example/1'), 'https://archive.example/1');
   for (const address of ['javascript:alert(1)', 'data:text/html,x', 'photos/a', '', undefined, 'file:///etc']) {
     assert.equal(web(address), null, String(address));
   }
-});
-
-test('those named most often are credited first', () => {
-  const photos = ['A', 'B', 'B', ''].map((credit) => ({ credit }));
-  assert.deepEqual(everybody([{ buildings: [{ photos }, {}] }]), ['B', 'A']);
 });
 
 test('letters on the plan never stand on their heads', () => {

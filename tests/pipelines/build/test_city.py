@@ -11,7 +11,7 @@ import pytest
 from nostalgin_core import reconstruct
 from nostalgin_core.steps import Networks
 from pipelines.build import Lost
-from pipelines.index import manifest
+from pipelines.index import asked, manifest
 from pipelines.models import Models
 from pipelines.site.folder import Foreign
 from pipelines.site.publish import publish
@@ -19,6 +19,7 @@ from pipelines.store.store import Store
 from pipelines.store.versions import Versions
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, built, copied, tree
+from tests.pipelines.told import told_blocks, told_buildings
 
 TWO_PROCESSES = ("--direct_num_workers=2",)
 
@@ -102,9 +103,8 @@ def test_the_site_shows_the_title_or_the_folder_s_name(
     shutil.copytree(city, other)
     store = Store(str(other))
     models = Models(str(city.parent / "models"))
-    rows = manifest.read(store).rows
     run = (other / "CURRENT").read_text().strip()
-    publish(store, run, Versions.present(models), rows, title=title)
+    publish(store, run, Versions.present(models), title=title)
     record = json.loads((other / "site" / "site.json").read_text())
     assert record["title"] == (shown or "Main street")
 
@@ -118,9 +118,9 @@ def test_each_photo_is_credited_to_whom_its_own_row_names(
     rows = manifest.read(store).rows
     rows = [replace(row, credit=f"Archive of {row.photo}") for row in rows]
     run = (other / "CURRENT").read_text().strip()
-    publish(store, run, Versions.present(Models(str(city.parent / "models"))), rows)
-    record = json.loads((other / "site" / "site.json").read_text())
-    photos = [p for b in record["blocks"] for h in b["buildings"] for p in h["photos"]]
+    asked.written(store, run, asked.told_as(rows))
+    publish(store, run, Versions.present(Models(str(city.parent / "models"))))
+    photos = [p for one in told_buildings(other / "site") for p in one["photos"]]
     assert len(photos) >= 4
     assert all(one["credit"] == f"Archive of {one['caption']}" for one in photos)
 
@@ -137,7 +137,7 @@ def test_a_manifest_that_was_mended_by_hand_is_built_and_written_anew(
     first = built(other)
     assert not manifest.read(Store(str(other))).mended
     assert built(other).run == first.run
-    (block, _) = json.loads((other / "site/site.json").read_text())["blocks"]
+    (block, _) = told_blocks(other / "site")
     assert {one["street"] for one in block["buildings"]} == {"Oak Street"}
 
 
@@ -154,11 +154,9 @@ def test_two_folders_may_hold_photos_of_one_name(city: Path, tmp_path: Path) -> 
     manifest.write(Store(str(other)), rows)
     report = built(other)
     assert (report.photos, report.rejected_photos, report.assumed) == (4, 0, 1)
-    record = json.loads((other / "site" / "site.json").read_text())
     named = [
         photo["credit"]
-        for block in record["blocks"]
-        for building in block["buildings"]
+        for building in told_buildings(other / "site")
         for photo in building["photos"]
         if photo["caption"] == "5_1.png"
     ]

@@ -19,6 +19,7 @@ from pipelines.index.row import Row
 from pipelines.store import Store
 from tests.pipelines import painted
 from tests.pipelines.cities import artifacts, built, tree
+from tests.pipelines.told import told_buildings
 
 HEAD = "photo,front_id,building_id,what,value,note\n"
 
@@ -280,10 +281,7 @@ def test_a_build_obeys_and_does_again_only_the_block(tmp_path: Path) -> None:
     (city / "corrections.csv").write_text(f"{HEAD},,{named},height_m,31.5,\n")
     report = built(city)
     assert report.run != first.run
-    told = json.loads((city / "site" / "site.json").read_text())
-    high = {
-        b["id"]: b["height_m"] for block in told["blocks"] for b in block["buildings"]
-    }
+    high = {b["id"]: b["height_m"] for b in told_buildings(city / "site")}
     assert high[named] == 31.5
     fresh = tree(city).keys() - before.keys()
     stages = {name.split("/")[1] for name in fresh if name.startswith("artifacts/")}

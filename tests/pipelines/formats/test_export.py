@@ -156,3 +156,30 @@ def test_a_block_of_one_lot_and_of_a_thousand_is_written(
     kinds = [one["type"] for row in rows for one in row]
     assert kinds.count("Building") == count
     assert set(kinds) <= {"Building", "LandUse"}
+
+
+def test_a_record_that_is_gone_or_damaged_is_named_with_the_remedy(
+    tmp_path: Path,
+) -> None:
+    made = shown_city.published(tmp_path, shown_city.block_model("1", (0.0, 0.0)))
+    (header,) = site_record(made)["blocks"]
+    path = made / "site" / header["record"]
+    path.write_bytes(path.read_bytes().replace(b"Street", b"Alley!", 1))
+    words = f"{header['record']} is damaged; build the city again"
+    with pytest.raises(Unexportable, match=words):
+        export(made, tmp_path / "out", ("cityjson",))
+    path.unlink()
+    with pytest.raises(Unexportable, match=f"{header['record']}: No such file"):
+        export(made, tmp_path / "out", ("iiif",), base=BASE)
+
+
+def test_a_site_of_an_earlier_version_is_refused_with_the_remedy(
+    tmp_path: Path,
+) -> None:
+    made = shown_city.published(tmp_path, shown_city.block_model("1", (0.0, 0.0)))
+    told = site_record(made)
+    for block in told["blocks"]:
+        del block["record"]
+    (made / "site/site.json").write_text(json.dumps(told))
+    with pytest.raises(Unexportable, match=r"earlier version.*nostalgin build"):
+        export(made, tmp_path / "out", ("obj",))

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from pipelines.cli import app
 from pipelines.formats import Unexportable, export
 from tests.pipelines.formats.readers import told
+from tests.pipelines.told import told_buildings
 
 PROV = """
 import json, sys
@@ -55,11 +56,9 @@ def test_every_stage_tells_its_version_and_its_parameters(
 def test_a_building_is_derived_from_the_photographs_that_it_wears(
     city: Path, document: dict[str, Any]
 ) -> None:
-    record = json.loads((city / "site/site.json").read_text())
     worn = {
         (f"building:{building['id']}", f"photo:{photo['key']}")
-        for block in record["blocks"]
-        for building in block["buildings"]
+        for building in told_buildings(city / "site")
         for photo in building["photos"]
         if photo["used"]
     }

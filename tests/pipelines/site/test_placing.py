@@ -1,17 +1,22 @@
 import numpy as np
 import pytest
 
-from nostalgin_core.city import Anchor
+from nostalgin_core.city import Anchor, Plot
 from nostalgin_core.records import Front
 from pipelines.index import Anchors
-from pipelines.index.row import Row
-from pipelines.site.placing import placing, spot
+from pipelines.site.placing import placing, plot_of, spot
 
 RING = [[0.0, 0.0], [80.0, 0.0], [80.0, 50.0], [0.0, 50.0]]
-RECORDS = [{"block": name, "outline_m": [RING]} for name in ("10", "11")]
 
 
-def rows() -> list[Row]:
+def plots() -> list[Plot]:
+    return [
+        plot_of({"block": name, "outline_m": [RING]}, fronts(name))
+        for name in ("10", "11")
+    ]
+
+
+def fronts(block: str) -> list[Front]:
     made = []
     for name, streets in (("10", "ABCD"), ("11", "CEFG")):
         for side, street in enumerate(streets):
@@ -20,12 +25,12 @@ def rows() -> list[Row]:
                 f"{name}-{side}", name, "1", 0, side, side, street,
                 "31" if odd else "30", 80.0, None, width_assumed=False,
             )  # fmt: skip
-            made.append(Row(2, "", "", front, "", {}))
-    return made
+            made.append(front)
+    return [one for one in made if one.block == block]
 
 
 def test_blocks_without_anchors_have_no_place_on_the_globe() -> None:
-    found = placing(RECORDS, rows(), Anchors())
+    found = placing(plots(), Anchors())
     assert found.origin is None
     assert found.spots == {}
     assert [row["how"] for row in found.rows] == ["streets", "streets"]
@@ -34,7 +39,7 @@ def test_blocks_without_anchors_have_no_place_on_the_globe() -> None:
 
 def test_one_anchor_puts_every_block_on_the_globe() -> None:
     here = Anchor(-73.986, 40.7555, 119.0)
-    found = placing(RECORDS, rows(), Anchors({"10": here}))
+    found = placing(plots(), Anchors({"10": here}))
     assert set(found.spots) == {"10", "11"}
     assert [row["how"] for row in found.rows] == ["point", "streets"]
     assert spot(found.rows[0])["bearing_deg"] == pytest.approx(119.0)
@@ -45,13 +50,13 @@ def test_one_anchor_puts_every_block_on_the_globe() -> None:
 
 
 def test_a_measured_street_is_that_wide() -> None:
-    narrow = placing(RECORDS, rows(), Anchors(widths_m={"c": 10.0})).moves["11"]
-    wide = placing(RECORDS, rows(), Anchors(widths_m={"c": 40.0})).moves["11"]
+    narrow = placing(plots(), Anchors(widths_m={"c": 10.0})).moves["11"]
+    wide = placing(plots(), Anchors(widths_m={"c": 40.0})).moves["11"]
     apart = np.hypot(wide.east_m - narrow.east_m, wide.north_m - narrow.north_m)
     assert apart == pytest.approx(30.0)
 
 
 def test_blocks_on_one_another_are_told() -> None:
     here = Anchor(-73.986, 40.7555, 90.0)
-    found = placing(RECORDS, rows(), Anchors({"10": here, "11": here}))
+    found = placing(plots(), Anchors({"10": here, "11": here}))
     assert any("stand on one another" in note for note in found.notes)

@@ -22,8 +22,9 @@ from nostalgin_core.records import (
 from pipelines.index.row import Row
 from pipelines.site import camera, site
 from pipelines.site.folder import RECORD, Folder, Foreign
-from pipelines.site.publish import words_of, years
 from pipelines.site.record import record as recorded
+from pipelines.site.said import words_of, years
+from pipelines.store import tables
 from tests.core import listed
 
 WEBP = site.thumbnail(np.zeros((40, 30), np.uint8))
@@ -71,7 +72,8 @@ def test_every_file_that_is_named_is_there(tmp_path: Path, viewer: Path) -> None
     (leaf,) = tileset["root"]["children"]
     assert leaf["content"]["uri"] == block["uri"]
     assert (tmp_path / "site" / block["uri"]).read_bytes() == b"glTF"
-    first, second = block["buildings"][0]["photos"]
+    known = json.loads((tmp_path / "site" / block["record"]).read_text())
+    first, second = known["buildings"][0]["photos"]
     assert (tmp_path / "site" / first["file"]).read_bytes() == WEBP
     assert second["file"] is None
 
@@ -245,8 +247,25 @@ def test_a_row_says_date_and_record_of_its_photo_and_when_the_house_was_built() 
     words = {"date": "1940", "source_url": "https://archive.example/7", "year": "1911"}
     row = Row(2, "root", "a.jpg", front(0, rank=0, width_m=9.0), "Archive", words)
     photo = {"credit": "Archive", "date": "1940", "source_url": words["source_url"]}
-    assert words_of([(row, "ab"), (row, None)]) == {"ab": photo}
-    assert years([row]) == {"993-11": {"year": "1911"}}
+    (plain,) = told_rows([row])
+    assert words_of([plain | {"key": "ab"}, plain]) == {"ab": photo}
+    assert years([plain]) == {"993-11": {"year": "1911"}}
+
+
+def told_rows(rows: list[Row]) -> list[dict[str, Any]]:
+    """Give rows as `joined` hands them on, none of whose photos could be read."""
+    return [
+        {
+            "key": None,
+            "photo": row.photo,
+            "credit": row.credit,
+            "said": row.told,
+            "year": row.cells.get("year", ""),
+            "front": tables.to_row(row.front),
+            "rejections": [],
+        }
+        for row in rows
+    ]
 
 
 def test_only_a_web_page_is_handed_on_as_a_record() -> None:
