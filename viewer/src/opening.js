@@ -8,7 +8,7 @@ import { City } from './city.js';
 import { EvidenceVariant } from './paint.js';
 import { Unreadable } from './records.js';
 
-const EARLIER = 'An earlier version of nostalgin wrote this city. Run “nostalgin build CITY” again: photographs are not worked on anew.';
+const EARLIER = 'An earlier version of nostalgin wrote this city. Run “nostalgin build CITY” again.';
 
 /** Reads site.json and starts to load the tileset that it names, both beside the page. */
 export async function open(base = '', tell = () => {}) {
