@@ -25,9 +25,17 @@ class Unlocked(ValueError):  # noqa: N818 - it reads as what it is about
 
 @dataclass(frozen=True, slots=True)
 class Models:
-    """A folder with ONNX files and the lock that names their SHA-256."""
+    """A folder with ONNX files and the lock that names their SHA-256.
 
-    folder: str = str(PACKAGED)
+    Without a name it is that of the package, wherever the process has it installed.
+    """
+
+    folder: str = ""
+
+    @property
+    def path(self) -> Path:
+        """Tell where the folder is in this process."""
+        return Path(self.folder) if self.folder else PACKAGED
 
     def sha256(self, name: str) -> str:
         """Look up what a network's file must hash to.
@@ -35,9 +43,9 @@ class Models:
         Raises:
             Unlocked: if there is no lock, or it does not name this network.
         """
-        path = Path(self.folder) / LOCK
+        path = self.path / LOCK
         if not path.is_file():
-            raise Unlocked(f"{self.folder} has no {LOCK}: name a folder that has one")
+            raise Unlocked(f"{self.path} has no {LOCK}: name a folder that has one")
         try:
             lock = json.loads(bounded.read(path, bounded.LOCK_BYTES))
         except OSError as problem:
@@ -70,7 +78,7 @@ class Models:
                 segment.probe(network)
         except (session.ModelBrokenError, segment.Nonsense) as problem:
             raise Unlocked(
-                f"{Path(self.folder) / name}.onnx does not run ({problem}): install "
+                f"{self.path / name}.onnx does not run ({problem}): install "
                 "the package again, or export the network anew"
             ) from problem
         return network
@@ -82,7 +90,7 @@ class Models:
             Unlocked: if it is missing, or another file than the lock names.
         """
         wanted = self.sha256(name)
-        path = Path(self.folder) / f"{name}.onnx"
+        path = self.path / f"{name}.onnx"
         if not path.is_file():
             raise Unlocked(f"{path} is missing: name a folder that has it")
         try:

@@ -18,6 +18,7 @@ from apache_beam import pvalue
 from pipelines.build.bench import Bench
 from pipelines.build.blocks import Assign, Model
 from pipelines.build.corrected import Corrected
+from pipelines.build.kin import akin
 from pipelines.build.planned import Plan
 from pipelines.build.stages import (
     FacadeRef,
@@ -47,7 +48,7 @@ def city(
 ) -> Built:
     """Wire the whole way from photos to blocks."""
     planned: Any = pipeline | Plan(bench.store, asked, mended or Corrected())
-    read = planned.photos | Read()
+    read = planned.photos | "Same build" >> beam.Map(akin, bench) | Read()
     small = read.made | Thumbnail(bench)
     found = read.made | Segment(bench)
     matted = found.made | Matte(bench)

@@ -32,7 +32,8 @@ UNSURE: Final = (
     "its runner does not say that the job is over: see that it is before the next run"
 )
 DATAFLOW: Final = "apache_beam.runners.dataflow.internal.apiclient"
-LINES: Final = 8  # of what a runner says
+LINES: Final = 3  # at the end of what a runner says
+TRACE: Final = "Traceback (most recent call last):"
 WITHIN: Final = ("embed", "[local]", "[auto]", "")  # the runner starts it by itself
 TROUBLES: Final = (  # what Beam's runners were seen to end with
     ValueError,
@@ -134,5 +135,15 @@ def told(runner: str) -> Iterator[None]:
     try:
         yield
     except TROUBLES as problem:
-        words = "; ".join(str(problem).split("\n")[:LINES]) or type(problem).__name__
+        words = gist(str(problem)) or type(problem).__name__
         raise Unrun(f"--runner {runner} gave up: {words}") from problem
+
+
+def gist(said: str) -> str:
+    """Shorten what a runner says, tracebacks and all: what failed first, and of what.
+
+    The lines of a program are indented; of the others the first and the last few tell.
+    """
+    lines = [line.rstrip().removesuffix(TRACE) for line in said.split("\n")]
+    plain = [line for line in lines if line and not line[0].isspace()]
+    return "; ".join([*plain[:1], *plain[1:][-LINES:]])

@@ -4,6 +4,7 @@ import argparse
 import os
 import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from apache_beam.options.pipeline_options import (
@@ -96,12 +97,20 @@ def options(
     if "prism" in (standard.runner or "").casefold():
         prism.prism_location = cluster.prism(prism.prism_location)
     known(standard.runner or EMBEDDED, beam, prism.prism_location or "")
+    if (standard.runner or EMBEDDED) != EMBEDDED:  # whose workers stand elsewhere
+        own = found.view_as(CityOptions)
+        own.city, own.models = map(anywhere, (own.city, own.models))
     workers = found.view_as(DirectOptions).direct_num_workers
     if workers < 0:
         raise ValueError(
             f"--direct_num_workers={workers}: give a count, or 0 for one on each core"
         )
     return found
+
+
+def anywhere(path: str) -> str:
+    """Name a folder of this machine as it is called from any other folder."""
+    return str(Path(path).absolute()) if path and "://" not in path else path
 
 
 def processes_here(options: PipelineOptions) -> int:

@@ -115,7 +115,7 @@ def written_words(shard: str, schemes: Sequence[str], *, png: bool) -> str:
 
 def bench_of(ours: CityOptions, store: Store) -> Bench:
     """Set out what stages work with; a spoiled network is told here, not by photos."""
-    models = Models(ours.models) if ours.models else Models()
+    models = Models(ours.models)
     for network in NETWORKS:
         models.load(network)
     limits = Limits(ours.stage_seconds, ours.stage_gigabytes)

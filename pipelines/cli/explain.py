@@ -61,7 +61,7 @@ def explain_command(
     voice = Voice(errors, quiet=quiet)
     mended = redrawn(photo, data, corrections, voice)
     try:
-        networks = shelf.Models(str(models or shelf.PACKAGED)).networks(placard=placard)
+        networks = shelf.Models(str(models or "")).networks(placard=placard)
         given = {"every": every, "drawn": mended.drawn}
         report = explain.explain(data, out, networks, started=started, **given)
     except explain.Unreadable as problem:

@@ -37,7 +37,7 @@ def network(models: Path | None, name: str) -> Any:
     """Load a network, from the package unless another folder is named."""
     from pipelines import models as shelf
 
-    return shelf.Models(str(models or shelf.PACKAGED)).load(name)
+    return shelf.Models(str(models or "")).load(name)
 
 
 def tell(report: Any, text: str, *, as_json: bool, quiet: bool) -> None:

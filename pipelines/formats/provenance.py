@@ -12,7 +12,7 @@ from typing import Final
 import pyarrow as pa
 
 from pipelines.formats.published import Json, Published, Unexportable
-from pipelines.models import NETWORKS, PACKAGED, Models, Unlocked
+from pipelines.models import NETWORKS, Models, Unlocked
 from pipelines.site import safe
 from pipelines.store import Damaged, Store, runs
 
@@ -101,7 +101,7 @@ class Writer:
         from pipelines.store.versions import MARKED, PARAMETERS, version
 
         marks = {name: watermark_sha256(name) for name in ("", *known_watermarks())}
-        models = Models(self._noted.get("options", {}).get("models") or str(PACKAGED))
+        models = Models(self._noted.get("options", {}).get("models") or "")
         for stage in STAGES:
             name = f"stage:{stage}"
             made_by = self._noted.get("versions", {}).get(stage, "")

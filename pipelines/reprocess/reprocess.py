@@ -57,7 +57,7 @@ def reprocess(
     with held(store):
         build.written_anew(store)
         workers = options.view_as(DirectOptions).direct_num_workers or 1
-        models = Models(ours.models) if ours.models else Models()
+        models = Models(ours.models)
         asked_now = now(store, models, schemes=build.schemes_of(ours))
         ours.allow_schemes = ",".join(asked_now.schemes)
         ours.no_webp = asked_now.png

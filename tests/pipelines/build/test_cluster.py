@@ -2,11 +2,12 @@ import importlib
 import socket
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from pipelines.build import cluster
-from pipelines.build.options import options
+from pipelines.build.options import CityOptions, options
 
 
 @pytest.fixture
@@ -67,6 +68,36 @@ def test_what_a_runner_ends_with_is_told_in_a_line() -> None:
     said = "FlinkRunner gave up: no java; really"
     with pytest.raises(cluster.Unrun, match=said), cluster.told("FlinkRunner"):
         raise RuntimeError("no java\nreally")
+
+
+def test_of_a_workers_traceback_what_failed_and_why_is_told() -> None:
+    said = """job failed: bundle 3 failed:Traceback (most recent call last):
+  File "a.py", line 1, in process
+FileNotFoundError: no such file
+
+During handling of the above exception, another exception occurred:
+
+Traceback (most recent call last):
+  File "b.py", line 2, in process
+RuntimeError: no such file [while running 'Rows']
+"""
+    told = cluster.gist(said).split("; ")
+    assert told[0] == "job failed: bundle 3 failed:"
+    assert told[1] == "FileNotFoundError: no such file"
+    assert told[-1] == "RuntimeError: no such file [while running 'Rows']"
+    assert len(told) == 1 + cluster.LINES
+
+
+def test_workers_elsewhere_are_told_whole_paths(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    far = ["--runner=PortableRunner", "--job_endpoint=localhost:1"]
+    made = options("city", models="m", beam=far).view_as(CityOptions)
+    assert (made.city, made.models) == (str(tmp_path / "city"), str(tmp_path / "m"))
+    made = options("s3://bucket/city", beam=far).view_as(CityOptions)
+    assert (made.city, made.models) == ("s3://bucket/city", "")
+    assert options("city").view_as(CityOptions).city == "city"
 
 
 @pytest.mark.parametrize("odd", ["--job_name=\udcff", "\udcff"])
