@@ -15,6 +15,7 @@ TABLE_BYTES: Final = 250_000_000  # a list: a million rows of the New York archi
 NETWORK_BYTES: Final = 2_000_000_000  # ONNX's own limit
 LOCK_BYTES: Final = 1_000_000
 PROFILE_BYTES: Final = 64_000  # of an archive: some patterns
+MARK_BYTES: Final = 16_000_000  # of a watermark: a tile of a million places
 SLACK: Final = 1 << 20
 
 

@@ -7,55 +7,86 @@ place of whose gradients and matting the known step and tone serve).
 """
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Final
 
 import cv2
 import numpy as np
 
-from nostalgin_core.arrays import Gray
+from nostalgin_core.arrays import Gray, Mask
 from nostalgin_core.rectify import watermark
-from nostalgin_core.rectify.watermark import Sums, Tile, Watermark
+from nostalgin_core.rectify.watermark import (
+    NEAR_PX,
+    WHITE,
+    WIDE_PX,
+    Sums,
+    Tile,
+    Watermark,
+)
 
-ROUNDS: Final = (8.0, 2.5, 2.5, 2.5, 2.5, 2.5)  # px: how near tones are told, by round
-LETTERED: Final = 0.02  # of `a`, smoothed: where less is covered, there is no letter
-BLUR_CELLS: Final = 3.0
+ROUNDS: Final = 6
+FIRST_PX: Final = 8.0  # how near tones are told before letters are known
+HALO: Final = (0.1, 0.03)  # in first rounds: what letters' own tone puts round them
+NOISE: Final = 2.5  # times what the tile's median place stands out: letters do more
+PEAK: Final = 99.5  # per cent of places, below what stands out most
+LEAST_WEIGHT: Final = 0.05  # of a place: one pixel on an even wall
+MOST: Final = 0.9  # of `a`: behind what covers more there is nothing to solve for
+BLUR_CELLS: Final = 2.0
+STROKE: Final = 0.5  # of the way from a stroke's middle to what lies beside it
 LEAST_SPREAD: Final = 1e-6  # of tones over a place: below, nothing tells `a` from `b`
 
 
-def measured(
-    images: Callable[[], Iterable[Gray]],
-    words: str,
-    *,
-    step: tuple[float, float],
-    cells: tuple[int, int],
-) -> Watermark:
-    """Measure the tile of a mark that images bear, by so many cells down and across.
+def measured(images: Callable[[], Iterable[Gray]], mark: Watermark) -> Watermark:
+    """Measure the tile of a mark that images bear: what was known of it is not.
 
     Each round tells letters from their background by the round before. The images are
-    asked for anew in each round, and are as wide as `watermark.WIDE_PX` at most.
+    asked for anew in each round, and are `wide_px` wide at most.
     """
-    blank = np.zeros(cells, np.float32)
-    mark = Watermark(words, blank, blank, step)
-    for near_px in ROUNDS:
-        total = Sums(*(np.zeros(cells) for _ in Sums._fields))
+    blank = np.zeros(mark.covers.shape, np.float32)
+    mark = replace(mark, covers=blank, adds=blank, near_px=FIRST_PX)
+    for number in range(ROUNDS):
+        total = Sums(*(np.zeros(blank.shape) for _ in Sums._fields))
         for image in images():
             bare = watermark.background(mark, image.shape)
-            own = watermark.summed(image, bare, mark, near_px=near_px)
+            own = watermark.summed(image, bare, mark)
             total = Sums(*(x + y for x, y in zip(total, own, strict=True)))
-        mark = Watermark(words, *solved(total), step)
+        halo = HALO[number] if number < len(HALO) else 0.0
+        covers, adds = solved(total, halo)
+        mark = replace(mark, covers=covers, adds=adds)
+        mark = replace(mark, near_px=near(mark))
     return mark
 
 
-def solved(sums: Sums) -> tuple[Tile, Tile]:
+def near(mark: Watermark) -> float:
+    """Tell how near to strokes their background's tone is told: wide ones reach far."""
+    lettered = np.pad((mark.covers != 0) | (mark.adds != 0), 2, mode="wrap")
+    far = cv2.distanceTransform(lettered.astype(np.uint8), cv2.DIST_L2, 3).max()
+    cell_px = mark.step[0] * WIDE_PX / mark.covers.shape[1]
+    return max(NEAR_PX, STROKE * float(far) * cell_px)
+
+
+def solved(sums: Sums, halo: float) -> tuple[Tile, Tile]:
     """Solve for what each place of the tile covers and adds; zero beside letters."""
     spread = sums.w * sums.wtt - sums.wt**2
-    known = spread > LEAST_SPREAD * np.maximum(sums.w**2, LEAST_SPREAD)
-    spread = np.where(known, spread, 1.0)
-    slope = np.where(known, (sums.w * sums.wtr - sums.wt * sums.wr) / spread, 0.0)
-    adds = np.where(known, (sums.wr - slope * sums.wt) / np.maximum(sums.w, 1e-9), 0.0)
-    smooth = cv2.GaussianBlur(
-        np.pad(np.abs(slope), 12, mode="wrap"), (0, 0), BLUR_CELLS
-    )
-    lettered = smooth[12:-12, 12:-12] > LETTERED
-    covers = np.where(lettered, -slope, 0.0)
-    return covers.astype(np.float32), np.where(lettered, adds, 0.0).astype(np.float32)
+    enough = np.maximum(sums.w**2, LEAST_SPREAD)
+    known = (spread > LEAST_SPREAD * enough) & (sums.w > LEAST_WEIGHT)
+    over = np.where(known, sums.w * sums.wtr - sums.wt * sums.wr, 0.0)
+    slope = np.clip(over / np.where(known, spread, 1.0), -MOST, MOST)
+    adds = (sums.wr - slope * sums.wt) / np.maximum(sums.w, LEAST_WEIGHT)
+    lettered = known & borne(sums, slope, spread, halo)
+    covers, adds = (np.where(lettered, one, 0.0) for one in (-slope, adds))
+    return covers.astype(np.float32), adds.clip(-WHITE, WHITE).astype(np.float32)
+
+
+def borne(sums: Sums, slope: Tile, spread: Tile, halo: float) -> Mask:
+    """Tell which places stand out, in the mean or with the tone, more than by chance.
+
+    In squares of standard deviations, as weights are one over variances; what most
+    places have is chance, and so is a `halo`, a share of what stands out most.
+    """
+    chance = sums.wr**2 / np.maximum(sums.w, 1e-9)
+    chance += slope**2 * spread / np.maximum(sums.w, 1e-9)
+    padded = np.pad(chance, 12, mode="wrap")
+    smooth = cv2.GaussianBlur(padded, (0, 0), BLUR_CELLS)[12:-12, 12:-12]
+    low, high = np.median(smooth), np.percentile(smooth, PEAK)
+    return smooth > max(NOISE * float(low), halo * float(high))

@@ -6,11 +6,12 @@ elevation tells.
 Paper: section 3.3. Open `rectify` first, then `orient`.
 """
 
+from nostalgin_core.rectify.cleared import unmarked
 from nostalgin_core.rectify.drawn import drawn
 from nostalgin_core.rectify.legible import sharpness, stretched
 from nostalgin_core.rectify.rectify import rectify
 from nostalgin_core.rectify.standpoint import standpoint
-from nostalgin_core.rectify.watermark import Watermark, unmarked
+from nostalgin_core.rectify.watermark import Watermark
 
 __all__ = [
     "Watermark",

@@ -8,28 +8,27 @@ equation 1, with one tile for all of a collection):
 
 `J` is the copy, `I` the photograph, `a` how much of it the mark covers, and `b` what
 the mark adds in gray levels; the tile repeats in steps that are shares of the copy's
-width, from the middle of the copy. `a` and `b` were measured on many copies
-(`measure.watermarks`), so a copy that bears them can be solved for `I`. Any other photo
-is left as it is, bit by bit. Texels are solved, not painted: no more of the photograph
-is hidden than `a`, which is less than a third.
+width, from the middle of the copy, its head or its foot. `a` and `b` were measured on
+many copies (`measure.watermarks`), so a copy that bears them can be solved for `I`
+(`cleared`). Texels are solved, not painted: no more of the photograph is hidden than
+`a`, which is less than a third of New York's.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, UInt8
 
 from nostalgin_core.arrays import Gray, Mask
-from nostalgin_core.records import Photo
 
-WIDE_PX: Final = 560  # to which wider photos are shrunk to be looked at
-FINEST_PX: Final = 720  # of a width: a finer copy shows edges that the tile has not
+WIDE_PX: Final = 560  # of the copies that New York's tile was measured on
 LEAST_PX: Final = 280  # of a photo's width: in a narrower one nobody reads the mark
 NEAR_PX: Final = 2.5  # round a letter: where its background's tone is told
 CLEAR: Final = 0.012  # of `a`, and of `b` over white: below, a pixel is background
 WHITE: Final = 255.0
+EDGE: Final = 1e-6  # of a cell: what lies between two is always in the second
 GRAIN: Final = 3.0  # variance of a scan's grain, in square gray levels
 OUTLIER: Final = 45.0  # gray levels: what differs more is an edge of the street
 STRENGTHS: Final = (0.6, 1.4)  # of a copy's mark over the known one's
@@ -48,6 +47,10 @@ class Watermark:
     covers: Tile  # a
     adds: Tile  # b, in gray levels
     step: tuple[float, float]  # to the right and down, over the photo's width
+    from_top: float = 0.5  # of the height: the row from which tiles are counted
+    wide_px: int = WIDE_PX  # of the copies that it was measured on
+    near_px: float = NEAR_PX  # of a copy `WIDE_PX` wide: farther for wider strokes
+    shift: tuple[float, float] = (0.0, 0.0)  # of a copy's tiles, in tiles
 
 
 class Sums(NamedTuple):
@@ -76,22 +79,6 @@ class Fit(NamedTuple):
         return low < self.strength < high and self.surely > LEAST_SURE
 
 
-def unmarked(photo: Photo, mark: Watermark | None) -> tuple[Photo, str]:
-    """Take a mark out of a photo that bears it, and give its words; else give neither.
-
-    A copy much finer than those that the tile was measured on keeps its mark, which
-    would leave a ghost. A tone that the solution takes beyond white or black ends
-    there.
-    """
-    fine = photo.image.shape[1] > FINEST_PX
-    if mark is None or fine or not fit(photo.image, mark).borne:
-        return photo, ""
-    covers, adds = laid(mark, photo.image.shape)
-    solved = (photo.image - adds) / (1 - covers)
-    image = np.clip(np.rint(solved), 0, 255).astype(np.uint8)
-    return replace(photo, image=image), mark.words
-
-
 def fit(image: Gray, mark: Watermark) -> Fit:
     """Measure how strongly an image bears a mark.
 
@@ -102,14 +89,21 @@ def fit(image: Gray, mark: Watermark) -> Fit:
     h, w = image.shape
     if w < LEAST_PX or h < LEAST_PX:
         return Fit(0.0, 0.0)
-    if w > WIDE_PX:
-        size = WIDE_PX, max(LEAST_PX, round(h * WIDE_PX / w))
-        image = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+    image = shrunk(image, mark)
     sums = summed(image, background(mark, image.shape), mark)
     here = strength(sums, mark, (0, 0))
     there = [strength(sums, mark, shift) for shift in elsewhere(mark)]
     spread = float(np.std(there))
     return Fit(here, (here - float(np.mean(there))) / spread if spread else 0.0)
+
+
+def shrunk(image: Gray, mark: Watermark) -> UInt8[np.ndarray, "rows columns"]:
+    """Shrink an image that is wider than the copies that a mark was measured on."""
+    (h, w), wide = image.shape, mark.wide_px
+    if w <= wide:
+        return image
+    size = wide, max(LEAST_PX, round(h * wide / w))
+    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
 def elsewhere(mark: Watermark) -> list[tuple[int, int]]:
@@ -134,10 +128,16 @@ def background(mark: Watermark, shape: tuple[int, ...]) -> Mask:
     return (np.abs(covers) < CLEAR) & (np.abs(adds) < CLEAR * WHITE)
 
 
-def summed(
-    image: Gray, bare: Mask, mark: Watermark, *, near_px: float = NEAR_PX
-) -> Sums:
-    """Sum up over all tiles what an image says of a mark; even places say most."""
+class Standing(NamedTuple):
+    """What stands out of the tone beside letters, at each place of an image."""
+
+    weight: Field
+    tone: Field
+    over: Field
+
+
+def standing(image: Gray, bare: Mask, *, near_px: float) -> Standing:
+    """Tell what stands out of an image's background; even places weigh most."""
     tones = image.astype(np.float32)
     shown = bare.astype(np.float32)
     near = near_px * image.shape[1] / WIDE_PX
@@ -150,6 +150,12 @@ def summed(
     over = tones - tone
     weight = 1 / (round_about((over * shown) ** 2) / known + np.float32(GRAIN))
     weight[np.abs(over) > OUTLIER] = 0
+    return Standing(weight, tone, over)
+
+
+def summed(image: Gray, bare: Mask, mark: Watermark) -> Sums:
+    """Sum up over all tiles what an image says of a mark."""
+    weight, tone, over = standing(image, bare, near_px=mark.near_px)
     cells = cell_of(mark, image.shape)
     values = (weight, weight * tone, weight * tone**2, weight * over)
     return Sums(
@@ -163,14 +169,16 @@ def summed(
 def places(mark: Watermark, shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Give the tile's column of each column of an image, and its row of each row."""
     (h, w), (th, tw) = shape, mark.covers.shape
-    across = (np.arange(w) - (w - 1) / 2) / (mark.step[0] * w) % 1 * tw
-    down = (np.arange(h) - (h - 1) / 2) / (mark.step[1] * w) % 1 * th
-    return across, down
+    right, below = mark.shift
+    across = (np.arange(w) - (w - 1) / 2) / (mark.step[0] * w) + right
+    down = (np.arange(h) - (h - 1) * mark.from_top) / (mark.step[1] * w) + below
+    return across % 1 * tw, down % 1 * th
 
 
 def cell_of(mark: Watermark, shape: tuple[int, ...]) -> np.ndarray:
     """Number the tile's cell that each pixel lies in, row by row."""
-    across, down = (one.astype(np.intp) for one in places(mark, shape))
+    found = zip(places(mark, shape), mark.covers.shape[::-1], strict=True)
+    across, down = ((one + EDGE).astype(np.intp) % n for one, n in found)
     return (down[:, None] * mark.covers.shape[1] + across).ravel()
 
 

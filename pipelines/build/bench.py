@@ -32,7 +32,7 @@ class Bench:
     limits: Limits = field(default_factory=Limits)
     retry: bool = False  # what ended its process in an earlier run
     image_format: ImageFormat = "webp"  # of the models' textures
-    mark: str = ""  # of the archive's copies, by name; empty: none is taken out
+    mark: bytes = b""  # the file of the copies' watermark; empty: none is taken out
     damaged: list[str] = field(default_factory=list, compare=False)  # met and dropped
     found: list[str] = field(default_factory=list, compare=False)  # and not made
     made: list[str] = field(default_factory=list, compare=False)
@@ -84,7 +84,7 @@ class Bench:
     @property
     def watermark(self) -> Watermark | None:
         """Give the mark that the archive's copies bear, if it is to be taken out."""
-        return index.watermark(self.mark)
+        return index.loaded_watermark(self.mark)
 
     def decoded(self, ref: PhotoRef) -> Photo | Rejection:
         """Read and decode a photo again: cheaper than carrying its pixels."""

@@ -126,14 +126,14 @@ def bench_of(ours: CityOptions, store: Store) -> Bench:
     return Bench(near, versions, models, limits, ours.retry, form, mark)
 
 
-def mark_of(store: Store) -> str:
-    """Name the watermark that a city's profile tells of, if it does.
+def mark_of(store: Store) -> bytes:
+    """Read the file of the watermark that a city's profile tells of, if it does.
 
     Raises:
         Unusable: if the profile makes no sense.
     """
     try:
-        return index.of_city(store).watermark
+        return index.of_city(store).mark
     except index.Nothing as problem:
         raise Unusable(str(problem)) from problem
 

@@ -21,6 +21,7 @@ from pipelines.cli import (
     schedule,
     status,
     view,
+    watermark,
     workers,
 )
 from pipelines.console import echo, opened_streams
@@ -69,6 +70,7 @@ app.command("index", epilog=index.EXAMPLES, context_settings=TO_BEAM)(
 app.command("check", epilog=check.EXAMPLES)(check.check_command)
 app.command("corrections", epilog=corrections.EXAMPLES)(corrections.corrections_command)
 app.command("review", epilog=review.EXAMPLES)(review.review_command)
+app.command("watermark", epilog=watermark.EXAMPLES)(watermark.watermark_command)
 app.command("build", epilog=build.EXAMPLES, context_settings=TO_BEAM)(
     build.build_command
 )

@@ -69,8 +69,7 @@ def measured(files: Sequence[Path], known: Watermark) -> Watermark:
     def images() -> Iterator[Gray]:
         return (one.image for one in read(files) if one.image.shape[1] <= WIDE_PX)
 
-    cells = known.covers.shape
-    return watermarks.measured(images, known.words, step=known.step, cells=cells)
+    return watermarks.measured(images, known)
 
 
 def taken_out(files: Sequence[Path], mark: Watermark) -> Iterator[dict[str, Any]]:

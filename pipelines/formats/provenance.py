@@ -97,10 +97,12 @@ class Writer:
 
         A version is a hash of parameters and network, so equal ones have equal both.
         """
-        from pipelines.index import known_watermarks, watermark_sha256
+        from pipelines.index import known_watermarks, watermark_content
+        from pipelines.index import watermark_sha256 as hashed
         from pipelines.store.versions import MARKED, PARAMETERS, version
 
-        marks = {name: watermark_sha256(name) for name in ("", *known_watermarks())}
+        names = ("", *known_watermarks())
+        marks = {name: hashed(watermark_content(name)) for name in names}
         models = Models(self._noted.get("options", {}).get("models") or "")
         for stage in STAGES:
             name = f"stage:{stage}"

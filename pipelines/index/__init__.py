@@ -19,9 +19,10 @@ from pipelines.index.index import Indexed, index
 from pipelines.index.profiles import PROFILE, of_city
 from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned, of_folder
+from pipelines.index.watermarks import content as watermark_content
 from pipelines.index.watermarks import known as known_watermarks
+from pipelines.index.watermarks import loaded as loaded_watermark
 from pipelines.index.watermarks import sha256 as watermark_sha256
-from pipelines.index.watermarks import watermark
 from pipelines.index.witnesses import Ask, Heard
 
 __all__ = [
@@ -41,12 +42,13 @@ __all__ = [
     "known",
     "known_watermarks",
     "load",
+    "loaded_watermark",
     "of_city",
     "of_folder",
     "outdated",
     "renewed",
     "seldom",
     "told_of_places",
-    "watermark",
+    "watermark_content",
     "watermark_sha256",
 ]

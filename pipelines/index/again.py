@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple, Self, get_args
 
 from pipelines import bounded
-from pipelines.index import lists
+from pipelines.index import lists, watermarks
 from pipelines.index.anchors import Asked
 from pipelines.index.images import Nothing, images
 from pipelines.index.index import Draft, Indexed, Question, draft, put, replaceable
@@ -223,6 +223,8 @@ def facts(wish: Wish, city: str) -> str:
     names, refused = images(Path(wish.photos), city)
     told = [release("nostalgin"), json.dumps(asdict(wish), sort_keys=True)]
     told += [contents(getattr(wish, name)) for name in FILES]
+    own = profile(wish.profile).own_mark
+    told += [watermarks.sha256(own)] if own else []
     return key_of(*told, *names, "", *(one.key for one in refused))
 
 

@@ -10,7 +10,7 @@ from typing import Final
 from nostalgin_core import catalogue
 from nostalgin_core.catalogue import Catalogue, Doubt, Entry
 from nostalgin_core.records import Front, Rejection
-from pipelines.index import lists, manifest, readings, warned
+from pipelines.index import lists, manifest, readings, warned, watermarks
 from pipelines.index.anchors import Asked, taken
 from pipelines.index.columns import cells_of
 from pipelines.index.images import Nothing, images, spelt_out
@@ -150,6 +150,7 @@ def draft(
     )
     doubts = (*map(Doubt, said), *lots.doubts, *map(Doubt, heard_of))
     files[PROFILE] = own.toml
+    files |= {watermarks.OWN: own.own_mark} if own.own_mark else {}
     wanting = {"rejections": wrong, "doubts": doubts}
     return Draft(encoded, files, heard, indexed(rows, homeless, lots, heard, **wanting))
 

@@ -10,7 +10,7 @@ from nostalgin_core import expression
 from nostalgin_core.catalogue import Naming
 from pipelines.index import watermarks
 from pipelines.index.images import Nothing
-from pipelines.index.profiles import ARCHIVES, Profile
+from pipelines.index.profiles import ARCHIVES, Beside, Profile
 
 MOST_PATTERNS: Final = 20
 NEEDED: Final = ("block", "lot")
@@ -87,6 +87,7 @@ class Mark(Strict):
     """What copies bear that no camera saw."""
 
     known: Annotated[str, AfterValidator(named)] | None = None
+    file: str | None = None
 
 
 class Told(Strict):
@@ -97,7 +98,7 @@ class Told(Strict):
     watermark: Mark = Mark()
 
 
-def of_cells(cells: Mapping[str, Any], path: Path) -> Profile:
+def of_cells(cells: Mapping[str, Any], path: Path, held: Beside) -> Profile:
     """Make a profile of what TOML says.
 
     Raises:
@@ -112,8 +113,26 @@ def of_cells(cells: Mapping[str, Any], path: Path) -> Profile:
         raise Nothing(f"{path}: board.pattern: of no board; write present = true, too")
     patterns = tuple(told.names.patterns), tuple(told.names.without_list)
     naming = Naming(*patterns, shipped=path.parent == ARCHIVES)
-    mark = told.watermark.known or ""
-    return Profile(path.stem, naming, board.present, board.pattern or "", mark)
+    mark, own = told.watermark.known or "", own_mark(told.watermark, path, held)
+    return Profile(path.stem, naming, board.present, board.pattern or "", mark, own)
+
+
+def own_mark(told: Mark, path: Path, held: Beside) -> bytes:
+    """Read the watermark that an archive learnt itself, if a profile names one.
+
+    Raises:
+        Nothing: if it can't be read, or is none.
+    """
+    if told.file is None:
+        return b""
+    if told.known:
+        raise Nothing(f"{path}: watermark.file: beside `known`; write one of them")
+    try:
+        return watermarks.own(held(told.file))
+    except (OSError, ValueError) as problem:
+        why = getattr(problem, "strerror", None) or problem
+        words = "name a file that `nostalgin watermark` wrote, beside the profile"
+        raise Nothing(f"{path}: watermark.file: {why}; {words}") from problem
 
 
 def numbered(place: int) -> str:

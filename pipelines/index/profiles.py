@@ -5,6 +5,7 @@ lie in `archives/`.
 """
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -12,12 +13,15 @@ from typing import Final
 
 from nostalgin_core.catalogue import Naming
 from pipelines import bounded
+from pipelines.index import watermarks
 from pipelines.index.images import Nothing
 from pipelines.store import Store
 
 ARCHIVES: Final = Path(__file__).with_name("archives")
 USUAL: Final = "nyc-1940"
 PROFILE: Final = "profile.toml"  # in a city folder: the one that it was indexed with
+
+Beside = Callable[[str], bytes]  # reads a file that a profile names
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,13 @@ class Profile:
     boarded: bool  # its photographs show boards
     board: str = ""  # a pattern of theirs; empty: of New York's
     watermark: str = ""  # that its copies bear, by name; empty: none is taken out
+    own_mark: bytes = b""  # the file of one that the archive learnt itself
     toml: bytes = b""  # as it was read
+
+    @property
+    def mark(self) -> bytes:
+        """Give the file of the watermark that copies bear; nothing of none."""
+        return self.own_mark or watermarks.content(self.watermark)
 
 
 def profile(asked: str) -> Profile:
@@ -68,7 +78,12 @@ def read(path: Path) -> Profile:
         raise Nothing(
             f"{path}: {why}; name a TOML file, or one of {known}"
         ) from problem
-    return parsed(data, path)
+    return parsed(data, path, beside(path))
+
+
+def beside(path: Path) -> Beside:
+    """Read files that lie beside a profile."""
+    return lambda name: bounded.read(path.parent / name, bounded.MARK_BYTES)
 
 
 def of_city(store: Store) -> Profile:
@@ -80,10 +95,16 @@ def of_city(store: Store) -> Profile:
     """
     if not store.exists(PROFILE):
         return shipped(USUAL)
-    return parsed(store.read_bytes(PROFILE, bounded.PROFILE_BYTES), Path(PROFILE))
+    data = store.read_bytes(PROFILE, bounded.PROFILE_BYTES)
+    return parsed(data, Path(PROFILE), lambda _: kept_mark(store))
 
 
-def parsed(data: bytes, path: Path) -> Profile:
+def kept_mark(store: Store) -> bytes:
+    """Read the archive's own watermark, as `index` kept it in a city folder."""
+    return store.read_bytes(watermarks.OWN, bounded.MARK_BYTES)
+
+
+def parsed(data: bytes, path: Path, held: Beside) -> Profile:
     """Read a profile's bytes.
 
     Raises:
@@ -100,4 +121,4 @@ def parsed(data: bytes, path: Path) -> Profile:
         of_cells,
     )  # slow to load, and a worker needs none
 
-    return replace(of_cells(cells, path), toml=data)
+    return replace(of_cells(cells, path, held), toml=data)

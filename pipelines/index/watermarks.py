@@ -1,12 +1,14 @@
 """The watermarks of archives that are known: a small file each, beside the profiles.
 
 A file holds what one tile covers and adds, what it says, and its steps, as
-`nostalgin evaluate watermark` measures them. It is data of ours alone: no pixel of a
-photograph is in it.
+`nostalgin watermark` learns them; an archive's own lies in its city's folder. It is
+data of ours alone: no pixel of a photograph is in it.
 """
 
 import hashlib
 import io
+import zipfile
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -17,6 +19,11 @@ from nostalgin_core.rectify import Watermark
 
 ARCHIVES: Final = Path(__file__).with_name("archives")
 SUFFIX: Final = ".npz"
+OWN: Final = "watermark.npz"  # in a city folder: the archive's own
+BLANK: Final = np.zeros((1, 1), np.float32)
+PLAIN: Final = Watermark("", BLANK, BLANK, (1.0, 1.0))
+USUAL: Final = PLAIN.from_top, PLAIN.wide_px, PLAIN.near_px  # need not be told
+WIDEST_PX: Final = 10_000
 
 
 def known() -> list[str]:
@@ -27,17 +34,43 @@ def known() -> list[str]:
 @lru_cache
 def watermark(name: str) -> Watermark | None:
     """Load a watermark that comes with the program; none by an empty name."""
-    return read(content(name)) if name else None
-
-
-def sha256(name: str) -> str:
-    """Hash a watermark, so that what it was taken out of can be told; "" of none."""
-    return hashlib.sha256(content(name)).hexdigest() if name else ""
+    return loaded(content(name))
 
 
 def content(name: str) -> bytes:
-    """Read a watermark's file."""
-    return (ARCHIVES / f"{name}{SUFFIX}").read_bytes()
+    """Read the file of one that comes with the program; nothing by an empty name."""
+    return (ARCHIVES / f"{name}{SUFFIX}").read_bytes() if name else b""
+
+
+@lru_cache(maxsize=4)
+def loaded(data: bytes) -> Watermark | None:
+    """Load a watermark's file; none of nothing."""
+    return read(data) if data else None
+
+
+def sha256(data: bytes) -> str:
+    """Hash a watermark, so that what it was taken out of can be told; "" of none."""
+    return hashlib.sha256(data).hexdigest() if data else ""
+
+
+def own(data: bytes) -> bytes:
+    """Insist on a file that `written` wrote.
+
+    Raises:
+        ValueError: if it is none.
+    """
+    try:
+        mark = read(data)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as problem:
+        raise ValueError("no watermark that `nostalgin watermark` wrote") from problem
+    tiles, told = (mark.covers, mark.adds), (*mark.step, mark.from_top, mark.near_px)
+    sound = all(one.ndim == 2 and np.isfinite(one).all() for one in (*tiles,))
+    sound = sound and mark.covers.shape == mark.adds.shape and mark.covers.size > 0
+    if not (sound and np.isfinite(told).all() and min(mark.step) > 0):
+        raise ValueError("a watermark of no sense: learn it anew")
+    if np.abs(mark.covers).max() >= 1 or not 0 < mark.wide_px <= WIDEST_PX:
+        raise ValueError("a watermark of no sense: learn it anew")
+    return data
 
 
 def read(data: bytes) -> Watermark:
@@ -45,17 +78,24 @@ def read(data: bytes) -> Watermark:
     with np.load(io.BytesIO(data), allow_pickle=False) as held:
         across, down = (float(one) for one in held["step"])
         covers, adds = (held[name].astype(np.float32) for name in ("covers", "adds"))
-        return Watermark(str(held["words"]), covers, adds, (across, down))
+        mark = Watermark(str(held["words"]), covers, adds, (across, down))
+        if "told" not in held:  # New York's
+            return mark
+        from_top, wide_px, near_px = (float(one) for one in held["told"])
+    return replace(mark, from_top=from_top, wide_px=int(wide_px), near_px=near_px)
 
 
 def written(mark: Watermark) -> bytes:
     """Write a watermark, the same bytes for the same."""
     out = io.BytesIO()
-    np.savez_compressed(
-        out,
-        words=np.array(mark.words),
-        covers=mark.covers.astype(np.float16),
-        adds=mark.adds.astype(np.float16),
-        step=np.array(mark.step),
-    )
+    told = (mark.from_top, mark.wide_px, mark.near_px)
+    held = {
+        "words": np.array(mark.words),
+        "covers": mark.covers.astype(np.float16),
+        "adds": mark.adds.astype(np.float16),
+        "step": np.array(mark.step),
+    }
+    if told != USUAL:
+        held["told"] = np.array(told)
+    np.savez_compressed(out, allow_pickle=False, **held)
     return out.getvalue()

@@ -41,7 +41,7 @@ from pipelines.store.store import ARTIFACTS
 CODE: Final = {
     "segment": 12,
     "matte": 7,
-    "rectify": 11,
+    "rectify": 12,
     "compare": 2,
     "inpaint": 6,
     "block": 9,

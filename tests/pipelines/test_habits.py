@@ -8,12 +8,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import typer
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from nostalgin_core.catalogue import Doubt
+from nostalgin_core.measure.overlays import Learnt
+from nostalgin_core.records import Box, Photo
+from nostalgin_core.rectify import Watermark
 from pipelines.cli import app
 from pipelines.console import Voice, indexed
 from pipelines.index.index import Indexed, index
@@ -117,6 +121,7 @@ WORDS = {
     "reprocess": f"reprocess {{city}} {MODELS}",
     "schedule": f"schedule {{city}} --once --cron * {MODELS}",
     "status": "status {city}",
+    "watermark": "watermark {city}/../photos -o {city}/out.npz --words A.org",
     "workers": "workers",
     **{
         one: f"{one} {{city}}"
@@ -140,6 +145,11 @@ def stubbed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pipelines.evaluate.labels.pairs", lambda *_, **__: [])
     monkeypatch.setattr("pipelines.build.serve", lambda *_: None)
     monkeypatch.setattr("pipelines.view.Server.serve_forever", lambda _: None)
+    tile = np.zeros((8, 8), np.float32)
+    mark = Watermark("A.org", tile, tile, (0.3, 0.2))
+    looked = [Photo("k", np.zeros((9, 9), np.uint8), Box(0, 0, 9, 9))]
+    learnt = Learnt(20, 30.0, 0.9, 20, mark), looked
+    monkeypatch.setattr("pipelines.index.learning.learnt", lambda *_: learnt)
     front = {"unseen": 0.1, "left": 0.0, "photo": "5_1.png", "views": ()}
     monkeypatch.setattr("pipelines.explain.explain_front", lambda *_: front)
     none = Indexed(0, 0, 0, (), 0, (), (Doubt("a warning"),))

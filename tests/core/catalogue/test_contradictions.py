@@ -54,3 +54,29 @@ def test_a_range_that_can_t_be_one_lot_s_is_named(address: str, why: str) -> Non
 @pytest.mark.parametrize("address", ["", "561-565", "108-12", "33 1/2", "1435", "12A"])
 def test_ranges_as_archives_write_them_are_sound(address: str) -> None:
     assert told(replace(ROW, address=address)) == []
+
+
+def along(*addresses: str) -> list[Entry]:
+    """A lot for each number of one street, without photographs."""
+    return [
+        replace(ROW, photo="", row=2 + n, lot=str(20 + n), address=address)
+        for n, address in enumerate(addresses)
+    ]
+
+
+def test_a_number_far_from_all_others_of_its_side_is_named() -> None:
+    (line,) = told(*along("101", "103-105", "109", "111", "183"))
+    assert "lot 24: row 6 says 183, 72 numbers from the next" in line
+
+
+@pytest.mark.parametrize(
+    "addresses",
+    [
+        ("101", "103", "109", "111", "131"),  # ten doors
+        ("101", "103", "131", "133", "183"),  # others stand far apart, too
+        ("101", "103", "183"),  # too few to tell
+        ("101", "103", "109", "111", "182"),  # the other side's alone
+    ],
+)
+def test_a_number_that_may_well_be_is_not(addresses: tuple[str, ...]) -> None:
+    assert told(*along(*addresses)) == []

@@ -1,14 +1,19 @@
 """Known watermarks lie beside the profiles, and a profile says which is meant."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from pipelines.index import Nothing, watermarks
+from nostalgin_core.rectify import Watermark
+from pipelines.build import mark_of
+from pipelines.index import Nothing, index, watermarks
+from pipelines.index.index import Question
 from pipelines.index.profiles import USUAL, profile
 from pipelines.models import Models
 from pipelines.site import credited
+from pipelines.store import Store
 from pipelines.store.versions import CODE, Versions
 
 
@@ -36,7 +41,7 @@ def test_a_profile_that_names_none_keeps_the_watermark(tmp_path: Path) -> None:
     assert profile("plain").watermark == ""
     assert profile(own(tmp_path, "[board]\npresent = true\n")).watermark == ""
     assert watermarks.watermark("") is None
-    assert watermarks.sha256("") == ""
+    assert watermarks.sha256(b"") == ""
 
 
 def test_a_watermark_that_nobody_knows_is_told_with_those_that_are(
@@ -44,6 +49,47 @@ def test_a_watermark_that_nobody_knows_is_told_with_those_that_are(
 ) -> None:
     with pytest.raises(Nothing, match=r"watermark\.known: .*nyc-records"):
         profile(own(tmp_path, '[watermark]\nknown = "../nyc-records"\n'))
+
+
+def test_a_profile_names_a_watermark_that_an_archive_learnt_itself(
+    tmp_path: Path,
+) -> None:
+    learnt = replace(known(), words="A.org", from_top=0.0, wide_px=800)
+    (tmp_path / "a.npz").write_bytes(watermarks.written(learnt))
+    own_profile = profile(own(tmp_path, '[watermark]\nfile = "a.npz"\n'))
+    again = watermarks.loaded(own_profile.mark)
+    assert again is not None
+    assert (again.words, again.from_top, again.wide_px) == ("A.org", 0.0, 800)
+    assert np.array_equal(again.covers, learnt.covers)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ['file = "no.npz"', 'file = "bad.npz"', 'file = "a.npz"\nknown = "nyc-records"'],
+)
+def test_a_watermark_file_of_no_sense_is_told(tmp_path: Path, text: str) -> None:
+    (tmp_path / "bad.npz").write_bytes(b"PK no archive")
+    (tmp_path / "a.npz").write_bytes(watermarks.written(known()))
+    with pytest.raises(Nothing, match=r"watermark\.file"):
+        profile(own(tmp_path, f"[watermark]\n{text}\n"))
+
+
+def test_a_city_keeps_the_watermark_that_its_profile_names(tmp_path: Path) -> None:
+    data = watermarks.written(replace(known(), words="A.org"))
+    (tmp_path / "a.npz").write_bytes(data)
+    named = own(tmp_path, '[watermark]\nfile = "a.npz"\n')
+    photos = tmp_path / "photos"
+    photos.mkdir()
+    (photos / "993_8a.jpg").write_bytes(b"\xff\xd8\xff")
+    city = str(tmp_path / "city")
+    index(photos, None, city, Question(archive=profile(named)))
+    assert mark_of(Store(city)) == data
+
+
+def known() -> Watermark:
+    mark = watermarks.watermark("nyc-records")
+    assert mark is not None
+    return mark
 
 
 def test_only_straightening_depends_on_what_is_taken_out() -> None:
