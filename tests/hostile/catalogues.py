@@ -165,7 +165,7 @@ def rows() -> list[HostileRow]:
 
 def numbers() -> list[HostileRow]:
     nonsense = "nan inf -inf 1e999 -5 0 401 1e2 0x10 10m 1_0 1940-01-01 =1+1".split()  # noqa: SIM905
-    nonsense += ["1,5", "9" * 5000, "\u221e", "ten"]
+    nonsense += ["1,500", "9" * 5000, "\u221e", "ten"]
     width = [
         HostileRow(f"width {cell[:12]}", {"width_m": cell}, "nonsense width_m")
         for cell in nonsense
