@@ -24,6 +24,7 @@ BLANK: Final = np.zeros((1, 1), np.float32)
 PLAIN: Final = Watermark("", BLANK, BLANK, (1.0, 1.0))
 USUAL: Final = PLAIN.from_top, PLAIN.wide_px, PLAIN.near_px  # need not be told
 WIDEST_PX: Final = 10_000
+MOST_BYTES: Final = 64_000_000  # of a file, unpacked
 
 
 def known() -> list[str]:
@@ -60,6 +61,7 @@ def own(data: bytes) -> bytes:
         ValueError: if it is none.
     """
     try:
+        fits(data)
         mark = read(data)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as problem:
         raise ValueError("no watermark that `nostalgin watermark` wrote") from problem
@@ -71,6 +73,18 @@ def own(data: bytes) -> bytes:
     if np.abs(mark.covers).max() >= 1 or not 0 < mark.wide_px <= WIDEST_PX:
         raise ValueError("a watermark of no sense: learn it anew")
     return data
+
+
+def fits(data: bytes) -> None:
+    """Refuse a file that unpacks to more than a tile has.
+
+    Raises:
+        ValueError: if it does.
+    """
+    with zipfile.ZipFile(io.BytesIO(data)) as held:
+        size = sum(one.file_size for one in held.infolist())
+    if size > MOST_BYTES:
+        raise ValueError(f"{size:,} bytes unpacked; a tile has fewer")
 
 
 def read(data: bytes) -> Watermark:

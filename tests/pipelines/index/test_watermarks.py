@@ -1,5 +1,6 @@
 """Known watermarks lie beside the profiles, and a profile says which is meant."""
 
+import io
 from dataclasses import replace
 from pathlib import Path
 
@@ -72,6 +73,13 @@ def test_a_watermark_file_of_no_sense_is_told(tmp_path: Path, text: str) -> None
     (tmp_path / "a.npz").write_bytes(watermarks.written(known()))
     with pytest.raises(Nothing, match=r"watermark\.file"):
         profile(own(tmp_path, f"[watermark]\n{text}\n"))
+
+
+def test_a_watermark_file_that_unpacks_to_far_more_is_refused() -> None:
+    out = io.BytesIO()
+    np.savez_compressed(out, covers=np.zeros(9_000_000))
+    with pytest.raises(ValueError, match="no watermark"):
+        watermarks.own(out.getvalue())
 
 
 def test_a_city_keeps_the_watermark_that_its_profile_names(tmp_path: Path) -> None:
