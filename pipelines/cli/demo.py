@@ -42,6 +42,7 @@ def demo_command(
     one_thread()
     from pipelines import index
     from pipelines.demo import CREDIT, TITLE, painted
+    from pipelines.index.index import Question
     from pipelines.view import view
 
     voice = Voice(errors, machine=json_lines, quiet=quiet)
@@ -56,9 +57,8 @@ def demo_command(
     told(str(folder), beam=beam)  # a mistyped option is told before anything is painted
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
-        made = index.index(
-            photos, listed, str(folder), force=True, credit=CREDIT, title=TITLE
-        )
+        asked = Question(credit=CREDIT, title=TITLE)
+        made = index.index(photos, listed, str(folder), asked, force=True)
     except OSError as problem:
         raise unwritable(folder, problem) from problem
     for warning in made.warnings:
