@@ -91,7 +91,7 @@ def number(cells: dict[str, Any], name: str) -> float | None:
     if not written:
         return None
     try:
-        value = float(decimal(written))
+        value = float(decimal(written).replace("_", "?"))  # Python parts digits by it
     except ValueError as problem:
         raise ValueError(f"{name} is {shown(cells, name)}, no number") from problem
     if not 0 <= value < float("inf"):

@@ -223,7 +223,7 @@ def rows() -> list[HostileRow]:
         *(("ring", cell) for cell in ("1e30", "100", "0.5", "-1", "one")),
         *(("rank", cell) for cell in ("nan", "10000", "0.5")),
         *(("width_m", cell) for cell in ("nan", "1e999", "-3", "0", "9" * 5000)),
-        ("width_m", "1,500"),
+        *(("width_m", cell) for cell in ("1,500", "1_0")),
         *(("depth_m", cell) for cell in ("inf", "401", "deep")),
         *(("width_assumed", "perhaps"), ("block", ""), ("lot", " ")),
     ]
