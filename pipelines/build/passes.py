@@ -12,7 +12,7 @@ one pipeline.
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 import apache_beam as beam
 import numpy as np
@@ -32,7 +32,7 @@ from pipelines.store import Store, runs
 
 # Of a pass, for each process: its workers start in the time of two photographs, and
 # the last of them waits for the others at its end.
-ROWS: Final = 1024
+ROWS: Final = 512
 PLACED: Final = ("root", "photo", "block")
 
 # Wires the work that is asked for, and its tables in so many parts.
@@ -153,8 +153,8 @@ def gather(store: Store, run: str, passed: list[str], parts: int) -> None:
         for part in range(parts):
             which = (part, parts)
             paths = [runs.table_path(one, name, which) for one in passed]
-            every: list[Any] = list(map(store.read_table, paths))
-            runs.write_sorted(store, run, name, pa.concat_tables(every), which)
+            table = pa.concat_tables(store.read_table(path) for path in paths)
+            runs.write_sorted(store, run, name, table, which)
 
 
 def drop(store: Store, run: str) -> None:

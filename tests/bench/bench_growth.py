@@ -2,6 +2,7 @@
 
     python tests/bench/bench_growth.py [metadata ROWS, default 10000]
     python tests/bench/bench_growth.py photos [PHOTOS, default 60]
+    python tests/bench/bench_growth.py memory [PHOTOS, default 1000]
     python tests/bench/bench_growth.py processes [PHOTOS, default 48]
     python tests/bench/bench_growth.py overhead [PHOTOS, default 2]
 
@@ -12,6 +13,10 @@ is read. Baseline: a third of the rows; a row is to cost the same.
 *photos*: tiny painted photographs are built from nothing, so many and a tenth and a
 hundredth of them. Baseline: the fewest; a photograph is to cost the same, and memory of
 driver and workers to stay.
+
+*memory*: the same of few contents, so that stages do little and as many references
+pass: what driver and workers hold of 100 photographs, and of so many. From 1,024 rows
+on two processes have more than one pass (`pipelines.build.passes`). Baseline: 100.
 
 *processes*: the same city in one process and in two, on the clock, which a busy machine
 spoils. Baseline: one process.
@@ -118,6 +123,23 @@ def photos(most: int) -> None:
         )
 
 
+def memory(most: int) -> None:
+    """Print what memory a photograph takes beyond the first hundred."""
+    first: dict[str, int] = {}
+    for count in sorted({100, most}):
+        with tempfile.TemporaryDirectory() as folder:
+            city = tiny.archive(Path(folder), count, own=False)
+            cost = tiny.built(city, *of(2))
+            held = tiny.record(city)["memory_mb"]
+        first = first or held
+        more = ", ".join(
+            f"{who} {mb} MB ({1000 * (mb - first[who]) / max(count - 100, 1):.0f} kB "
+            "a photograph more)"
+            for who, mb in held.items()
+        )
+        print(f"{count:6} photographs: {cost.cpu_s:7.1f} CPU s; {more}", flush=True)
+
+
 def processes(count: int) -> None:
     """Print how much faster two processes are than one."""
     taken = {}
@@ -220,6 +242,7 @@ def rebuilt(name: str, rows: list[Row], networks: steps.Networks) -> None:
 PARTS = {
     "metadata": (metadata, 10_000),
     "photos": (photos, 60),
+    "memory": (memory, 1000),
     "processes": (processes, 48),
     "overhead": (overhead, 2),
 }

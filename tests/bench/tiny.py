@@ -29,8 +29,12 @@ class Cost(NamedTuple):
     peak_gb: float  # of the largest process
 
 
-def archive(folder: Path, photos: int) -> Path:
-    """Write photographs, a list and small networks, and index them."""
+def archive(folder: Path, photos: int, *, own: bool = True) -> Path:
+    """Write photographs, a list and small networks, and index them.
+
+    Unless each has pixels of its `own`, blocks show the same few pictures: stages find
+    all but the first made, and as many references pass.
+    """
     (folder / "photos").mkdir(parents=True)
     pictures = [small(seed) for seed in range(min(SEEDS, photos))]
     rows = []
@@ -39,7 +43,7 @@ def archive(folder: Path, photos: int) -> Path:
         name = f"{block}_{lot}.png"
         image = pictures[number % len(pictures)].copy()
         digits = [number >> shift & 255 for shift in (0, 8, 16)]
-        image[-1, :3] = digits  # on the ground, where no front is
+        image[-1, :3] = digits if own else 0  # on the ground, where no front is
         (folder / "photos" / name).write_bytes(cv2.imencode(".png", image)[1].tobytes())
         street = f"{lot * 4 // (LOTS + 1)} Street {block}"
         rows.append([name, block, lot, street, 2 * lot, 6 + number % 5])

@@ -8,6 +8,7 @@ from tests.data import ROOT
 LATE = (
     *("pymongo", "bson", "boto3", "requests", "apache_beam.io.gcp.bigquery"),
     *("apache_beam.runners.portability.fn_api_runner.fn_runner", "prometheus_client"),
+    *("pyparsing", "proto.message", "beartype.door", "numpy.f2py.f2py2e"),
     *("scipy.optimize", "scipy.cluster", "scipy.spatial", "pydantic", "pyproj"),
 )
 WORKER = "import pipelines.build.blocks, apache_beam.runners.worker.sdk_worker_main"
@@ -30,6 +31,19 @@ def test_a_worker_loads_no_client_and_nothing_that_only_the_driver_needs() -> No
     loaded, said = loaded_after(WORKER)
     assert loaded == set()
     assert "bson" not in said
+
+
+def test_what_stands_in_is_loaded_when_it_is_used() -> None:
+    used = (
+        "import collections, numpy; from apache_beam.internal import http_client; "
+        "from apache_beam.coders import coders; "
+        "from apache_beam.typehints.typehints import is_consistent_with as fits; "
+        "assert fits(collections.OrderedDict, dict); assert not fits(str, bytes); "
+        "assert http_client.get_new_http(); assert coders.proto.Message; "
+        "assert numpy.f2py.f2py2e"
+    )
+    loaded, _ = loaded_after(f"{WORKER}; {used}")
+    assert loaded >= {"pyparsing", "proto.message", "beartype.door"}
 
 
 def test_what_was_left_out_can_be_had_afterwards() -> None:
