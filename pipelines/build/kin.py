@@ -37,6 +37,6 @@ def akin(ref: Ref, bench: Bench) -> Ref:
 
 
 @functools.lru_cache(maxsize=4)
-def here(models: Models, mark: str) -> Versions:
+def here(models: Models, mark: bytes) -> Versions:
     """Name the versions of all stages in this process."""
     return Versions.present(models, mark=index.watermark_sha256(mark))

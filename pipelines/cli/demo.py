@@ -42,7 +42,6 @@ def demo_command(
     one_thread()
     from pipelines import index
     from pipelines.demo import CREDIT, TITLE, painted
-    from pipelines.index.index import Question
     from pipelines.view import view
 
     voice = Voice(errors, machine=json_lines, quiet=quiet)
@@ -57,7 +56,7 @@ def demo_command(
     told(str(folder), beam=beam)  # a mistyped option is told before anything is painted
     try:
         photos, listed = painted(folder, blocks=blocks, tell=tell)
-        asked = Question(credit=CREDIT, title=TITLE)
+        asked = index.Question(credit=CREDIT, title=TITLE)
         made = index.index(photos, listed, str(folder), asked, force=True)
     except OSError as problem:
         raise unwritable(folder, problem) from problem

@@ -15,7 +15,7 @@ from pipelines.index.again import (
 )
 from pipelines.index.anchors import Anchors, keep, load, told_of_places
 from pipelines.index.images import Nothing
-from pipelines.index.index import Indexed, index
+from pipelines.index.index import Indexed, Question, index
 from pipelines.index.profiles import PROFILE, of_city
 from pipelines.index.sweeping import seldom
 from pipelines.index.title import cleaned, of_folder
@@ -33,6 +33,7 @@ __all__ = [
     "Indexed",
     "Kept",
     "Nothing",
+    "Question",
     "Wish",
     "cleaned",
     "drafted",
