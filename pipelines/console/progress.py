@@ -1,7 +1,9 @@
 """How far a build has come, told while it runs.
 
 A stage has done as many photos as it has artifacts, wherever its workers are: so the
-watcher counts these, and asks no runner. What is left is weighed by what stages cost.
+watcher counts these, and asks no runner. A city folder holds artifacts of other photos,
+too, and no name tells whose one is: so people hear what was made since the run began.
+What is left is weighed by what stages cost.
 """
 
 import threading
@@ -26,6 +28,7 @@ WEIGHTS: Final = {
 }
 # Facades a photo that a wall wears, of these those that another photo shows as well.
 SELDOM: Final = {"borrow": 0.54, "inpaint": 0.85}
+ONE_EACH: Final = ("segment", "matte", "rectify")  # an artifact a photo, at most
 EVERY_S: Final = 2.0  # a photo takes seconds
 SAY_EVERY_S: Final = 30.0  # without a terminal every line stays
 REST: Final = 20.0  # times as long as a look takes: a store may hold a million files
@@ -87,7 +90,7 @@ class Watch:
 
     def _facts(self, before: dict[str, int], seconds: float) -> dict[str, Any]:
         now = self._looked()
-        new = {stage: now[stage] - before[stage] for stage in now}
+        new = {stage: max(now[stage] - before[stage], 0) for stage in now}
         rate = 60 * new[PACE] / max(seconds, 1e-9)
         return {
             "photos": self.photos,
@@ -98,20 +101,25 @@ class Watch:
         }
 
     def _text(self, facts: dict[str, Any]) -> str:
-        parts = [f"{stage} {done}" for stage, done in facts["there"].items()]
+        parts = [f"{stage} {done}" for stage, done in facts["new"].items()]
         rate, left = facts["photos_per_minute"], facts["seconds_left"]
         photos = plural.of(self.photos, "photo")
-        words = f"{', '.join(parts)} of {photos}, {rate} photos a minute"
+        words = f"{photos}; made since the start: {', '.join(parts)}"
+        words = f"{words}; {rate} photos a minute"
         return words if left is None else f"{words}, about {spelled(left)} left"
 
 
 def left_s(
     now: dict[str, int], new: dict[str, int], photos: int, seconds: float
 ) -> int | None:
-    """Tell how long what lacks will take, at the pace so far; None: nothing was done.
+    """Tell how long what lacks will take, at the pace so far; None: nobody knows.
 
-    What the store holds of other photos, or of other shards, makes it less.
+    So it is while nothing was done, and where the store holds more than these photos
+    can have given: what lacks of them is not told then. Fewer artifacts of others, of
+    other shards for one, are not noticed, and make it less.
     """
+    if any(now.get(stage, 0) > photos for stage in ONE_EACH):
+        return None
     done = sum(weight * new.get(stage, 0) for stage, weight in WEIGHTS.items())
     wanted = {stage: SELDOM.get(stage, 1.0) * photos for stage in WEIGHTS}
     lacks = sum(
