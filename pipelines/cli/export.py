@@ -51,10 +51,13 @@ def export_command(
     target = out or city / "exports"
     wanted = list(dict.fromkeys(one.strip() for one in to.split(",") if one.strip()))
     try:
-        counts = formats.export(city, target, wanted, base=base, tell=tell)
+        done = formats.export(city, target, wanted, base=base, tell=tell)
     except (formats.Unexportable, Foreign) as problem:
         raise fail(str(problem)) from problem
     except OSError as problem:
         raise unwritable(target, problem) from problem
-    for name, count in counts.items():
+    for name, count in done.files.items():
         voice.echo(f"{target / name}: {plural.of(count, 'file')}")
+    failed = [fail(f"{name}: {why}") for name, why in done.refused.items()]
+    if failed:
+        raise failed[0]

@@ -11,7 +11,8 @@ and nothing of another's is touched. Models are read and written block by block.
 """
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -31,24 +32,36 @@ RIGHTS: Final = ("creativecommons.org/", "rightsstatements.org/")
 Tell = Callable[[str, int], None]  # a block's name, and how many are done
 
 
+@dataclass(frozen=True)
+class Exported:
+    """What was written, and what this city can't be told in."""
+
+    files: Mapping[str, int]  # of each format
+    refused: Mapping[str, str]  # why, and what to do about it, by format
+
+
 def silent(block: str, done: int) -> None:
     """Tell nobody."""
 
 
 def export(
     city: Path, out: Path, wanted: Sequence[str], *, base: str = "", tell: Tell = silent
-) -> dict[str, int]:
-    """Write a city; tell how many files each format has.
+) -> Exported:
+    """Write a city; tell how many files each format has, and which ones it can't have.
 
     `base` is the address where its site will lie: IIIF names everything by address.
 
     Raises:
-        Unexportable: if there is no site, or it can't be told in one of the formats;
-            nothing is written then.
+        Unexportable: if there is no site, none of the formats can tell it, or what is
+            asked for makes no sense; nothing is written then.
         Foreign: if a folder or a file in the way is another's.
     """
     site = published(city)
-    base = checked(site, wanted, base)
+    base = checked(wanted, base)
+    refused = unfit(site, wanted)
+    wanted = [one for one in wanted if one not in refused]
+    if not wanted:
+        raise Unexportable("; ".join(refused.values()))
     told = provenance.read(city, site) if "prov" in wanted else None
     makers: list[Any] = []
     if "cityjson" in wanted:
@@ -72,19 +85,25 @@ def export(
         canvases = list(first.values())
         made = formats.presentation(base, title=site.title, canvases=canvases)
         counts["iiif"] = single(out / "iiif", "manifest.json", made)
-    return counts
+    return Exported(counts, refused)
 
 
-def checked(site: Published, wanted: Sequence[str], base: str) -> str:
-    """Insist that all that is asked for can be told, before anything is written."""
+def unfit(site: Published, wanted: Sequence[str]) -> dict[str, str]:
+    """Tell which formats this city can't be told in, and what to do about it."""
+    if "geojson" not in wanted or site.place is not None:
+        return {}
+    words = (
+        "GeoJSON knows degrees alone (RFC 7946), and this city has no place on the "
+        "globe: give it one (`nostalgin index --place LAT,LON,BEARING`) and build again"
+    )
+    return {"geojson": words}
+
+
+def checked(wanted: Sequence[str], base: str) -> str:
+    """Insist that what is asked for makes sense, before anything is written."""
     odd = next((one for one in wanted if one not in FORMATS), None)
     if odd is not None or not wanted:
         raise Unexportable(f"--to {odd or ''}: choose of {', '.join(FORMATS)}")
-    if "geojson" in wanted and site.place is None:
-        raise Unexportable(
-            "GeoJSON knows degrees alone (RFC 7946), and this city has no place on the "
-            "globe: give it one and build again, or export cityjson and obj"
-        )
     if "iiif" in wanted and not base.startswith(("https://", "http://")):
         raise Unexportable(
             "IIIF names everything by its address: tell with --base https://... where "

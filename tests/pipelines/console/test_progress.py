@@ -1,6 +1,5 @@
 import io
 import json
-from collections.abc import Iterator
 
 import pytest
 from rich.console import Console
@@ -50,7 +49,7 @@ def watched(monkeypatch: pytest.MonkeyPatch, *, machine: bool) -> str:
     heard = io.StringIO()
     voice = Voice(Console(file=heard, width=999), machine=machine)
     before = dict.fromkeys(WEIGHTS, 36)
-    looks: Iterator[dict[str, int]] = iter([before, before | {"segment": 39}])
+    looks = iter([before, before | {"segment": 39}])
     watch = progress.Watch(voice, lambda: next(looks), 14)
 
     def once(_: float) -> bool:

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from typer.testing import CliRunner
 
+from pipelines.cli import app
 from pipelines.formats import Unexportable, export
 from pipelines.site import Foreign
 from tests.core import sample_block
@@ -81,10 +83,27 @@ def test_a_caption_of_ten_thousand_letters_survives(out: Path) -> None:
 def test_a_city_without_a_place_has_no_geojson_but_all_else(tmp_path: Path) -> None:
     made = shown_city.published(tmp_path, shown_city.block_model("1", (0.0, 0.0)))
     with pytest.raises(Unexportable, match="no place on the globe"):
-        export(made, tmp_path / "out", ("cityjson", "geojson"))
+        export(made, tmp_path / "out", ("geojson",))
     assert not (tmp_path / "out").exists()
-    export(made, tmp_path / "out", ("cityjson", "obj"))
+    alone = export(made, tmp_path / "alone", ("cityjson", "obj"))
+    assert not alone.refused
+    done = export(made, tmp_path / "out", ("cityjson", "obj", "geojson"))
+    assert (done.files, list(done.refused)) == (alone.files, ["geojson"])
+    assert tree(tmp_path / "out") == tree(tmp_path / "alone")
     assert "referenceSystem" not in lines(tmp_path / "out", "1")[0]["metadata"]
+
+
+def test_the_command_names_what_it_can_t_write_and_ends_with_1(tmp_path: Path) -> None:
+    made = shown_city.published(tmp_path, shown_city.block_model("1", (0.0, 0.0)))
+    done = CliRunner().invoke(
+        app, ["export", str(made), "--to", "geojson,cityjson,obj"]
+    )
+    assert done.exit_code == 1
+    assert "exports/cityjson: 3 files" in done.stdout
+    assert "exports/obj: 1 file" in done.stdout
+    assert "geojson: GeoJSON knows degrees alone" in " ".join(done.stderr.split())
+    assert "and build again" in " ".join(done.stderr.split())
+    assert not (made / "exports/geojson").exists()
 
 
 @pytest.mark.parametrize(
