@@ -6,7 +6,7 @@ code and parameters that made it, `runs` and `tables`.
 """
 
 from pipelines.store.aside import Aside
-from pipelines.store.disk import SECRETIVE, absent, durable, secretive, textual
+from pipelines.store.disk import SECRETIVE, absent, secretive, textual
 from pipelines.store.lock import Busy, busy, held
 from pipelines.store.packing import Piece, pack, pack_piece, pieces
 from pipelines.store.seal import Damaged
@@ -25,7 +25,6 @@ __all__ = [
     "Unstored",
     "absent",
     "busy",
-    "durable",
     "held",
     "key_of",
     "pack",

@@ -1,10 +1,13 @@
 import json
 import os
+import tracemalloc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from pipelines.site.folder import RECORD, Folder, Foreign, written
+from pipelines.site import folder as room
+from pipelines.site.folder import RECORD, Folder, Foreign, lines, written
 
 NAMES = ("index.html", "blocks/1.glb", "photos/a.webp")
 
@@ -147,3 +150,58 @@ def test_a_file_that_was_not_announced_is_a_mistake(tmp_path: Path) -> None:
         Folder(tmp_path / "site", NAMES).write("another", b"")
     told = json.loads((tmp_path / "site" / RECORD).read_bytes())
     assert told == {"now": [], "before": sorted(NAMES)}
+
+
+@pytest.mark.parametrize("now", [[], ["a"], ['a"\n', "שלום", "\udc80"]])
+@pytest.mark.parametrize("before", [[], ["a"], ["b", "c/d"]])
+def test_a_record_is_what_one_json_text_of_it_would_be(
+    now: list[str], before: list[str]
+) -> None:
+    told = {"now": now, "before": before}
+    assert "".join(lines(now, before)) == json.dumps(told, indent=0)
+
+
+def test_a_file_that_grows_is_there_whole_or_as_it_was(tmp_path: Path) -> None:
+    publish(tmp_path / "site")
+    before = files(tmp_path / "site")
+    path = tmp_path / "site/index.html"
+    written_at = path.stat().st_mtime_ns
+    site = Folder(tmp_path / "site", NAMES)
+    with pytest.raises(TypeError), site.growing("index.html") as file:
+        file.writelines([b"half of", None])  # type: ignore[list-item]
+    with site.growing("index.html") as file:
+        file.writelines((b"index", b".html"))
+    site.prune()
+    assert files(tmp_path / "site") == before
+    assert path.stat().st_mtime_ns == written_at
+    with site.growing("index.html") as file:
+        file.write(b"index.htmX")
+    assert path.read_bytes() == b"index.htmX"
+    with pytest.raises(KeyError):
+        site.growing("another")
+
+
+def small(count: int) -> Iterator[str]:
+    return (f"photos/{number:016x}.webp" for number in range(count))
+
+
+def test_a_name_is_held_once_however_often_it_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(room.Folder, "_free", lambda *_: None)  # no file is there yet
+    count, held = 20_000, []
+    for _ in range(3):
+        tracemalloc.start()
+        try:
+            site = Folder(tmp_path / "site", small(count))
+            held.append([each / count for each in tracemalloc.get_traced_memory()])
+        finally:
+            tracemalloc.stop()
+        del site
+        with monkeypatch.context() as only:  # of prune, its record
+            only.setattr(Path, "glob", lambda *_: ())
+            Folder(tmp_path / "site", small(count)).prune()
+    (first, _), *later = held
+    for now, most in later:
+        assert now == pytest.approx(first, rel=0.25)  # 3.2 where held twice
+        assert most < 3 * first  # as above, 6
