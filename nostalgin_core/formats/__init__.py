@@ -6,7 +6,7 @@ Open `shown` first.
 
 from nostalgin_core.formats.cityjson import feature, header, land
 from nostalgin_core.formats.geojson import footprint
-from nostalgin_core.formats.iiif import Canvas, presentation
+from nostalgin_core.formats.iiif import Canvas, canvas, presentation
 from nostalgin_core.formats.located import Ground, of_globe, of_plane
 from nostalgin_core.formats.obj import archive
 from nostalgin_core.formats.shown import Shell, Shown, Unreadable, png, read, tinted
@@ -18,6 +18,7 @@ __all__ = [
     "Shown",
     "Unreadable",
     "archive",
+    "canvas",
     "feature",
     "footprint",
     "header",

@@ -1,6 +1,6 @@
 """The photographs of a city as a IIIF Presentation 3.0 manifest, a canvas each."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -25,26 +25,23 @@ class Canvas:
     known: Mapping[str, str]  # lot, address ...
 
 
-def presentation(base: str, *, title: str, canvases: Sequence[Canvas]) -> Json:
-    """Write the manifest of pictures that lie below `base`, an address that ends in /.
+def presentation(base: str, *, title: str) -> Json:
+    """Begin the manifest of pictures that lie below `base`, an address that ends in /.
 
-    Every language is "none": nobody told which one a caption is in.
-
-    Raises:
-        ValueError: if there is no picture, for a manifest needs a canvas.
+    Its `items`, which come last, are the canvases (`canvas`), one at least. Every
+    language is "none": nobody told which one a caption is in.
     """
-    if not canvases:
-        raise ValueError("no photograph can be shown")
     return {
         "@context": CONTEXT,
         "id": f"{base}iiif/manifest.json",
         "type": "Manifest",
         "label": _text(title or "Photographs"),
-        "items": [_canvas(base, one) for one in canvases],
+        "items": [],
     }
 
 
-def _canvas(base: str, one: Canvas) -> Json:
+def canvas(base: str, one: Canvas) -> Json:
+    """Write the canvas of one picture below `base`."""
     home = f"{base}iiif/canvas/{one.name}"
     size = {"width": one.width_px, "height": one.height_px}
     image = {"id": f"{base}{one.file}", "type": "Image", "format": one.mime, **size}

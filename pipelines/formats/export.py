@@ -7,27 +7,25 @@
     OUT/iiif/manifest.json
 
 Each format has a folder of its own with a record of what we wrote there, as a site has,
-and nothing of another's is touched. Models are read and written block by block.
+and nothing of another's is touched. Models are read, and all but the provenance is
+written, block by block.
 """
 
-import json
+import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from PIL import Image
-
 from nostalgin_core import formats
-from nostalgin_core.formats import Canvas, Shown
+from nostalgin_core.formats import Shown
 from pipelines.formats import provenance
+from pipelines.formats.one_file import GeoJson, Iiif, single, text
 from pipelines.formats.published import Json, Published, Unexportable, published
 from pipelines.formats.words import attributes
 from pipelines.site import Folder, safe
 
 FORMATS: Final = ("cityjson", "obj", "geojson", "prov", "iiif")
-MIMES: Final = {".webp": "image/webp", ".jpg": "image/jpeg", ".png": "image/png"}
-RIGHTS: Final = ("creativecommons.org/", "rightsstatements.org/")
 
 Tell = Callable[[str, int], None]  # a block's name, and how many are done
 
@@ -63,28 +61,25 @@ def export(
     if not wanted:
         raise Unexportable("; ".join(refused.values()))
     told = provenance.read(city, site) if "prov" in wanted else None
-    makers: list[Any] = []
-    if "cityjson" in wanted:
-        makers.append(CityJson(out / "cityjson", site))
-    if "obj" in wanted:
-        makers.append(Obj(out / "obj", site))
-    if "geojson" in wanted:
-        makers.append(GeoJson(out / "geojson", site))
-    for done, block in enumerate(site.blocks if makers else [], 1):
-        shown, buildings = site.shown(block), site.buildings(block)
-        for maker in makers:
-            maker.add(block, shown, buildings)
-        tell(str(block["name"]), done)
-    counts = {maker.name: maker.close() for maker in makers}
+    counts: dict[str, int] = {}
+    with contextlib.ExitStack() as ending:
+        makers: list[Any] = []
+        if "cityjson" in wanted:
+            makers.append(CityJson(out / "cityjson", site))
+        if "obj" in wanted:
+            makers.append(Obj(out / "obj", site))
+        if "geojson" in wanted:
+            makers.append(GeoJson(out / "geojson", site, ending))
+        for done, block in enumerate(site.blocks if makers else [], 1):
+            shown, buildings = site.shown(block), site.buildings(block)
+            for maker in makers:
+                maker.add(block, shown, buildings)
+            tell(str(block["name"]), done)
+        counts |= {maker.name: maker.close() for maker in makers}
     if told is not None:
         counts["prov"] = single(out / "prov", "provenance.json", told)
     if "iiif" in wanted:
-        first: dict[str, Canvas] = {}
-        for each in (each for one in site.blocks for each in pictures(site, one)):
-            first.setdefault(each.name, each)
-        canvases = list(first.values())
-        made = formats.presentation(base, title=site.title, canvases=canvases)
-        counts["iiif"] = single(out / "iiif", "manifest.json", made)
+        counts["iiif"] = Iiif(out / "iiif", site).write(base)
     return Exported(counts, refused)
 
 
@@ -110,24 +105,6 @@ def checked(wanted: Sequence[str], base: str) -> str:
             "the site will lie"
         )
     return base if base.endswith("/") else f"{base}/"
-
-
-def single(folder: Path, name: str, value: Json) -> int:
-    """Write a format that is one file."""
-    return whole(Folder(folder, [name]), {name: text(value)})
-
-
-def whole(folder: Folder, files: dict[str, bytes]) -> int:
-    """Write files, and remove what we wrote before and not since."""
-    for name, data in files.items():
-        folder.write(name, data)
-    folder.prune()
-    return len(files)
-
-
-def text(value: Json) -> bytes:
-    """Write a value on one line."""
-    return json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
 
 
 class CityJson:
@@ -206,66 +183,3 @@ class Obj:
 
     def _name(self, block: Json) -> str:
         return f"{safe(str(block['name']))}.zip"
-
-
-class GeoJson:
-    """One collection of all footprints."""
-
-    name = "geojson"
-    file: Final = "footprints.geojson"
-
-    def __init__(self, folder: Path, site: Published) -> None:
-        """Take the folder for the one file."""
-        self._site, self._folder = site, Folder(folder, [self.file])
-        self._features: list[bytes] = []
-
-    def add(self, block: Json, shown: Shown, buildings: list[Json]) -> None:
-        """Keep one block's footprints."""
-        ground = self._site.ground(block)
-        known = {str(one["id"]): one for one in buildings}
-        for shell in shown.shells:
-            facts = attributes(shown, shell, known.get(shell.name, {}))
-            made = formats.footprint(shell, ground, attributes=facts)
-            if made is not None:
-                self._features.append(text(made))
-
-    def close(self) -> int:
-        """Write the collection."""
-        features = b",\n".join(self._features)
-        data = b'{"type": "FeatureCollection", "features": [\n' + features + b"\n]}\n"
-        return whole(self._folder, {self.file: data})
-
-
-def pictures(site: Published, block: Json) -> list[Canvas]:
-    """List the photographs of a block that the site has pictures of."""
-    made = []
-    for building in site.buildings(block):
-        for photo in building.get("photos", ()):
-            file = photo.get("file")
-            if not file or Path(file).suffix not in MIMES:
-                continue
-            try:
-                with Image.open(site.file(file)) as picture:
-                    width, height = picture.size
-            except OSError as problem:
-                raise Unexportable(f"{file}: {problem}; build again") from problem
-            rights = str(photo.get("rights", ""))
-            made.append(
-                Canvas(
-                    name=safe(str(photo["key"])),
-                    label=str(photo.get("caption") or photo["key"]),
-                    file=file,
-                    mime=MIMES[Path(file).suffix],
-                    width_px=width,
-                    height_px=height,
-                    credit=str(photo.get("credit", "")),
-                    rights=rights if any(one in rights for one in RIGHTS) else "",
-                    source=str(photo.get("source_url", "")),
-                    known={
-                        "Block": str(block["name"]),
-                        "Lot": str(building.get("lot", "")),
-                        "Address": str(building.get("address", "")),
-                    },
-                )
-            )
-    return made

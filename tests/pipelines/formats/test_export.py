@@ -1,16 +1,23 @@
 """What is exported equals what is shown, and programs we did not write read it."""
 
+import contextlib
 import json
+import tracemalloc
 import zipfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+from nostalgin_core.formats import Canvas
 from pipelines.cli import app
-from pipelines.formats import Unexportable, export
+from pipelines.formats import Unexportable, export, one_file
+from pipelines.formats.published import Published
 from pipelines.site import Foreign
 from tests.core import sample_block
 from tests.pipelines.formats import shown_city
@@ -72,6 +79,96 @@ def test_the_same_city_gives_the_same_bytes(globe: Path, out: Path) -> None:
     again = globe.parent / "again"
     export(globe, again, ("cityjson", "obj", "geojson", "iiif"), base=BASE)
     assert tree(again) == tree(out)
+
+
+def test_what_is_written_block_by_block_is_one_json_text(out: Path) -> None:
+    for name, first in (("iiif/manifest.json", ""), ("geojson/footprints.geojson", 1)):
+        data = (out / name).read_text()
+        whole = json.loads(data)
+        if first:
+            each = (json.dumps(one, ensure_ascii=False) for one in whole["features"])
+            told = ",\n".join(each)
+            told = f'{{"type": "FeatureCollection", "features": [\n{told}\n]}}\n'
+        else:
+            told = json.dumps(whole, ensure_ascii=False)
+        assert data == told
+
+
+def test_an_export_that_fails_half_way_leaves_the_files_of_the_one_before(
+    globe: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = ("geojson", "iiif")
+    export(globe, tmp_path, wanted, base=BASE)
+    before = tree(tmp_path)
+    real, seen = Published.buildings, []
+
+    def spoiled(self: Published, block: dict[str, Any]) -> list[dict[str, Any]]:
+        seen.append(block)
+        if len(seen) == 2:
+            raise Unexportable("damaged")
+        return real(self, block)
+
+    monkeypatch.setattr(Published, "buildings", spoiled)
+    for one in wanted:
+        seen.clear()
+        with pytest.raises(Unexportable, match="damaged"):
+            export(globe, tmp_path, (one,), base=BASE)
+        assert len(seen) == 2
+        assert tree(tmp_path).keys() == before.keys()
+        assert {n: d for n, d in tree(tmp_path).items() if ".nostalgin" not in n} == {
+            n: d for n, d in before.items() if ".nostalgin" not in n
+        }
+
+
+class Long:
+    """A city of 200 blocks, each told in 100,000 letters."""
+
+    blocks = tuple({"name": str(n), "frame": None} for n in range(200))
+    title = "A city"
+
+    def ground(self, block: dict[str, Any]) -> None:
+        """Tell nothing of where it lies."""
+
+
+def of_geojson(folder: Path, city: Any) -> None:
+    with contextlib.ExitStack() as ending:
+        made = one_file.GeoJson(folder, city, ending)
+        for block in city.blocks:
+            shown: Any = SimpleNamespace(shells=[SimpleNamespace(**block)])
+            made.add(block, shown, [])
+        made.close()
+
+
+def of_iiif(folder: Path, city: Any) -> None:
+    one_file.Iiif(folder, city).write(f"{BASE}/")
+
+
+@pytest.mark.parametrize("write", [of_geojson, of_iiif])
+def test_no_more_than_a_block_is_held(
+    write: Callable[[Path, Any], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def told(block: dict[str, Any]) -> str:
+        return block["name"].ljust(100_000)
+
+    def footprint(shell: Any, *_: Any, **__: Any) -> dict[str, str]:
+        return {"told": told(vars(shell))}
+
+    def pictures(_: Any, block: dict[str, Any]) -> list[Canvas]:
+        more: Any = ("a.webp", "image/webp", 1, 1, "", "", "", {})
+        return [Canvas(block["name"], told(block), *more)]
+
+    monkeypatch.setattr(one_file, "attributes", lambda *_: {})
+    monkeypatch.setattr(one_file.formats, "footprint", footprint)
+    monkeypatch.setattr(one_file, "pictures", pictures)
+    tracemalloc.start()
+    try:
+        write(tmp_path / "out", Long())
+        held = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    (file,) = (one for one in (tmp_path / "out").iterdir() if one.name[0] != ".")
+    assert file.stat().st_size > 200 * 100_000
+    assert held < 20 * 100_000  # some copies of one block, of 200
 
 
 def test_a_caption_of_ten_thousand_letters_survives(out: Path) -> None:
