@@ -31,7 +31,7 @@ SLIPS = 0.34  # of a side's house numbers: beyond, both parities stand on it
 class Side:
     """One side of an outline, as a placed line along a street."""
 
-    street: str
+    street: str  # its plain name, as all are here
     start_m: Float[np.ndarray, " 2"]
     end_m: Float[np.ndarray, " 2"]
 
@@ -122,7 +122,7 @@ def raised(
 
 
 def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
-    """Find the streets on which a block's rings face each other.
+    """Find the streets on which a block's rings face each other, by plain name.
 
     Two rings of one block share the streets that go on past both; the one that cuts
     it is the street whose house numbers are odd on one ring and even on the other.
@@ -130,17 +130,24 @@ def cutting_streets(rings: Sequence[Sequence[Front]]) -> frozenset[str]:
     cutting = set()
     for index, a in enumerate(rings):
         for b in rings[index + 1 :]:
-            for street in {front.street for front in a} & {front.street for front in b}:
+            for street in named(a) & named(b):
                 here, there = parities(a, street), parities(b, street)
                 if here and there and not here & there:
                     cutting.add(street)
     return frozenset(cutting)
 
 
+def named(fronts: Sequence[Front]) -> set[str]:
+    """Name the streets on which fronts stand, however their list spells each."""
+    return {plain_name(front.street) for front in fronts}
+
+
 def parities(fronts: Sequence[Front], street: str) -> set[int]:
     """Tell whether most house numbers on a street are odd (1) or even (0), or both."""
     numbers = [
-        house_numbers(front.address) for front in fronts if front.street == street
+        house_numbers(front.address)
+        for front in fronts
+        if plain_name(front.street) == street
     ]
     odd = [number[0] % 2 for number in numbers if number is not None]
     rarer = min(odd.count(0), odd.count(1))
@@ -157,7 +164,7 @@ def chained(rings: Sequence[Sequence[Front]]) -> list[Ring]:
     """
     cutting = cutting_streets(rings)
     free = [
-        {front.side: front.street for front in ring if front.street in cutting}
+        {side: street for side, street in streets_of(ring).items() if street in cutting}
         for ring in rings
     ]
     alone = [
@@ -202,15 +209,20 @@ def _facing(
         for a in mine:
             for b in yours:
                 if a.street == b.street:
-                    told = widths_m.get(plain_name(a.street))
+                    told = widths_m.get(a.street)
                     return face(ring, a, b, gap_m=told or street_width(a.street))
     return None
+
+
+def streets_of(fronts: Sequence[Front]) -> dict[int, str]:
+    """Name the street of each side of a ring."""
+    return {front.side: plain_name(front.street) for front in fronts}
 
 
 def sides(ring: Ring, fronts: Sequence[Front]) -> list[Side]:
     """Name the sides of a ring's outline by the streets of its fronts."""
     ends = np.roll(ring.outline_m, -1, axis=0) if ring.closed else ring.outline_m[1:]
-    streets = {front.side: front.street for front in fronts}
+    streets = streets_of(fronts)
     return [
         Side(streets[index], start, end)
         for index, (start, end) in enumerate(zip(ring.outline_m, ends, strict=False))

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from nostalgin_core.address import plain_name
 from nostalgin_core.block import cutting_streets
 from pipelines.index.plan import BlockTask
 
@@ -25,7 +24,7 @@ class Streets:
         if len(numbers) != 2 or not known:
             return task
         rings = [[f for f in task.fronts if f.ring == number] for number in numbers]
-        names = sorted(plain_name(street) for street in cutting_streets(rings))
+        names = sorted(cutting_streets(rings))
         gap = self.gaps_m.get(task.block)
         wide = {name: self.widths_m.get(name, gap) for name in names}
         known_m = tuple((name, m) for name, m in wide.items() if m is not None)

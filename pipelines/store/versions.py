@@ -44,7 +44,7 @@ CODE: Final = {
     "rectify": 12,
     "compare": 2,
     "inpaint": 6,
-    "block": 9,
+    "block": 10,
     "thumbnail": 2,
     "borrow": 5,
     "placard": 1,

@@ -1,6 +1,7 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 import shapely
 
@@ -40,7 +41,33 @@ def shapes(built: block.Block) -> list[shapely.Polygon]:
 
 
 def test_only_the_street_with_odd_and_even_numbers_cuts() -> None:
-    assert block.cutting_streets([WEST, EAST]) == {"Broadway"}
+    assert block.cutting_streets([WEST, EAST]) == {"broadway"}
+
+
+@pytest.mark.parametrize(
+    ("here", "there"),
+    [
+        ("5th Ave", "Fifth Avenue"),
+        ("E. 34 St.", "EAST 34TH STREET"),
+        ("Grand St", "Grand St"),
+    ],
+)
+def test_a_street_cuts_however_its_two_rings_spell_it(here: str, there: str) -> None:
+    def laid(west: str, east: str) -> block.Block:
+        rings = [(WEST, west), (EAST, east)]
+        fronts = [
+            replace(one, street=name) if one.street == "Broadway" else one
+            for ring, name in rings
+            for one in ring
+        ]
+        return block.block("9", fronts, [], {})
+
+    mixed, alike = laid(here, there), laid(here, here)
+    for one, other in zip(mixed.outline_m, alike.outline_m, strict=True):
+        np.testing.assert_array_equal(one, other)
+    west, east = shapes(mixed)
+    wide_m = address.street_width(there)
+    assert west.distance(east) == pytest.approx(wide_m, rel=0.1)
 
 
 def test_rings_face_each_other_over_the_street_that_cuts_them() -> None:
