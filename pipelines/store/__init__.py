@@ -6,13 +6,13 @@ code and parameters that made it, `runs` and `tables`.
 """
 
 from pipelines.store.aside import Aside
-from pipelines.store.disk import SECRETIVE, absent, secretive, textual
+from pipelines.store.disk import SECRETIVE, Unstored, absent, secretive, textual
 from pipelines.store.lock import Busy, busy, held
 from pipelines.store.packing import Piece, pack, pack_piece, pieces
 from pipelines.store.seal import Damaged
 from pipelines.store.shelf import Shelf
 from pipelines.store.stable import key_of
-from pipelines.store.store import Store, Unstored
+from pipelines.store.store import Store
 
 __all__ = [
     "SECRETIVE",

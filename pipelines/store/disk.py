@@ -26,6 +26,13 @@ NOWHERE: Final = frozenset(
 )
 
 
+class Unstored(BaseException):
+    """What was made can't be put where it belongs; no photo's fault, it ends the run.
+
+    It is no `Exception`, so that nothing that forgives a photo's crash forgives it.
+    """
+
+
 def absent(problem: OSError | ValueError) -> bool:
     """Tell whether a name leads to nothing; else nobody could look what is there."""
     return isinstance(problem, ValueError) or problem.errno in NOWHERE

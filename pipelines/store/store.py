@@ -36,13 +36,6 @@ MADE: Final = b"made"
 REJECTED: Final = b"rejected"
 
 
-class Unstored(BaseException):
-    """What was made can't be put where it belongs; no photo's fault, it ends the run.
-
-    It is no `Exception`, so that nothing that forgives a photo's crash forgives it.
-    """
-
-
 @dataclass(frozen=True)
 class Store:
     """A city folder, on this machine or wherever Arrow's file systems reach."""
@@ -144,6 +137,7 @@ class Store:
             for one in (name, *map(str, PurePosixPath(name).parents[:-1])):
                 Path(self.root, one).rmdir()  # an object store has none
 
+    @worded()
     def drop_tree(self, name: str) -> None:
         """Remove a folder with all that is in it, if it is there."""
         system, root = self._open()
@@ -296,7 +290,7 @@ class Store:
         try:
             self.write_table(name, marked)
         except OSError as problem:
-            raise Unstored(f"{name}: {problem}") from problem
+            raise disk.Unstored(f"{name}: {problem}") from problem
 
 
 @functools.lru_cache(maxsize=64)

@@ -82,8 +82,8 @@ def test_a_photo_that_can_not_be_read_leaves_its_lot_assumed(
 
 def test_a_stage_that_declines_ends_the_steps(networks: Networks) -> None:
     def nothing(gray: np.ndarray) -> tuple[np.ndarray, ...]:
-        *things, pixels = networks.segment(gray)
-        return (*(one[:0] for one in things), pixels)
+        *things, pixels, indoors = networks.segment(gray)
+        return (*(one[:0] for one in things), pixels, indoors)
 
     blind = Networks(nothing, networks.inpaint)
     words = [stage for stage, _ in steps.steps(painted.photo(0), blind, name="a")]

@@ -83,7 +83,7 @@ def test_the_graph_names_the_image_and_each_stage(options: Any, tmp_path: Path) 
     pipeline = beam.Pipeline(runner="FnApiRunner")
     todo = Asked(run="0" * 12, rows=720_000, photos=720_000, blocks=20_000, groups=720)
     bench = Bench(Store(str(tmp_path)), Versions.present(Models()), Models())
-    write(wired(pipeline, todo, bench), bench, todo)
+    write(wired(pipeline, todo, bench), bench, todo.run, parts=36)
     image = options.view_as(WorkerOptions).sdk_container_image
     where = DockerEnvironment.from_container_image(image)  # as Dataflow's runner does
     assert where.container_image == IMAGE
