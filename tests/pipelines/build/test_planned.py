@@ -114,7 +114,8 @@ def graph(store: Store, rows: int) -> int:
     todo = Asked("run", rows, rows // 50, groups, rows)
     bench = Bench(store, Versions.present(Models()), Models())
     pipeline = beam.Pipeline(runner="FnApiRunner")
-    write(city(pipeline, todo, bench), bench, todo)
+    parts = runs.parts_of(todo.rows)
+    write(city(pipeline, todo, bench), bench, todo.run, parts)
     return pipeline.to_runner_api().ByteSize()
 
 
