@@ -4,12 +4,10 @@ What a worker makes is kept under the versions of whoever asks. Of another build
 other networks, it would pass for what it is not.
 """
 
-import functools
 from typing import Final, TypeVar
 
 from pipelines import index
 from pipelines.build.bench import Bench
-from pipelines.models import Models
 from pipelines.store.versions import CODE, Versions
 
 Ref = TypeVar("Ref")
@@ -29,14 +27,9 @@ def akin(ref: Ref, bench: Bench) -> Ref:
     Raises:
         Strange: if it would not.
     """
-    own, asked = here(bench.models, bench.mark), bench.versions
+    mark = index.watermark_sha256(bench.mark)
+    own, asked = Versions.present(bench.models, mark=mark), bench.versions
     others = [one for one in CODE if getattr(own, one) != getattr(asked, one)]
     if others:
         raise Strange(f"this worker would do {', '.join(others)} otherwise: {REMEDY}")
     return ref
-
-
-@functools.lru_cache(maxsize=4)
-def here(models: Models, mark: bytes) -> Versions:
-    """Name the versions of all stages in this process."""
-    return Versions.present(models, mark=index.watermark_sha256(mark))

@@ -99,3 +99,19 @@ def in_short(said: str) -> str:
 def secretive(where: str) -> bool:
     """Tell whether a URI gives credentials away to whoever reads it."""
     return "://" in where and "@" in where.partition("://")[2].partition("/")[0]
+
+
+def drop_tree(system: pafs.FileSystem, path: str) -> None:
+    """Remove a folder with all that is in it, if it is there.
+
+    Of an object store the objects are removed: it knows no folder, or says that it has
+    none of that name where there are objects below.
+    """
+    if isinstance(system, pafs.LocalFileSystem):
+        with contextlib.suppress(FileNotFoundError):
+            system.delete_dir(path)
+        return
+    at = pafs.FileSelector(path, allow_not_found=True, recursive=True)
+    for one in system.get_file_info(at):
+        if one.is_file:
+            system.delete_file(one.path)

@@ -141,8 +141,7 @@ class Store:
     def drop_tree(self, name: str) -> None:
         """Remove a folder with all that is in it, if it is there."""
         system, root = self._open()
-        with contextlib.suppress(FileNotFoundError):
-            system.delete_dir(f"{root}/{name}")
+        disk.drop_tree(system, f"{root}/{name}")
 
     def drop(self, name: str) -> None:
         """Remove a file if it is there; from a pack, by writing it without."""

@@ -48,7 +48,7 @@ def run_shards(city: str, models: Path, made: Callable[[], int]) -> str:
         time.sleep(0.02)
     first.kill()
     said = [first.communicate()[1]]
-    assert made()
+    assert made(), said
     said.extend(map(ended, others))
     # what was killed, and the last run, which publishes
     said.extend(ended(started(city, models, shard)) for shard in (SHARDS[0], 0))

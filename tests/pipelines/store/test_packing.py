@@ -12,11 +12,12 @@ from pipelines.store.packing import artifact, pack
 from pipelines.store.shelf import ARTIFACT
 from pipelines.store.stable import key_of
 from pipelines.store.store import Store
-from tests.pipelines import s3
+from tests.pipelines import gcs, s3
 from tests.pipelines.buckets import objects
+from tests.pipelines.gcs import google
 from tests.pipelines.s3 import bucket
 
-__all__ = ["bucket"]
+__all__ = ["bucket", "google"]
 
 FOLDER = "artifacts/matte/1-abc"
 KEYS = [key_of(str(number)) for number in range(100)]
@@ -177,3 +178,18 @@ def test_pieces_are_parted_and_packed_by_whichever_process(
     assert sum(packing.pack_piece(near, one) for one in parts) == len(KEYS)
     assert told(store) == before
     assert not store.listed(FOLDER).loose
+
+
+@pytest.mark.parametrize(
+    "server", ["bucket", pytest.param("google", marks=gcs.needs_server)]
+)
+def test_a_folder_of_a_bucket_is_dropped_with_all_below_and_nothing_beside(
+    server: str, request: pytest.FixtureRequest
+) -> None:
+    root = request.getfixturevalue(server)
+    there = Store(f"{root}/city")
+    there.drop_tree("runs/a/passes")  # of which there is none
+    for name in ("runs/a/passes/1/x", "runs/a/passes/y", "runs/a/z", "runs/ab"):
+        there.write_bytes(name, b"1")
+    there.drop_tree("runs/a/passes")
+    assert set(objects(root, "city")) == {"runs/a/z", "runs/ab"}
