@@ -249,6 +249,15 @@ def test_escape_leaves_the_finder_at_once(visit: Visit) -> None:
     assert visit.page.locator("#finder").is_hidden()
 
 
+def test_a_finder_that_is_open_again_does_not_hear_of_its_close(visit: Visit) -> None:
+    visit.page.keyboard.press("g")
+    late = "document.getElementById('finder').dispatchEvent(new Event('close'))"
+    visit.ask(late)  # browsers tell of a close after what one types next
+    visit.page.keyboard.type("west")
+    visit.page.locator("#finder button", has_text="West 1 Street").first.wait_for()
+    visit.page.keyboard.press("Escape")
+
+
 def test_a_building_is_found_with_keys_alone(visit: Visit) -> None:
     visit.page.keyboard.press("g")
     visit.page.keyboard.type("2 lot 17")

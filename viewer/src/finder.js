@@ -19,7 +19,7 @@ export class Finder {
     this.words = dialog.querySelector('p');
     this.#forget();
     this.input.addEventListener('input', () => this.#fill());
-    dialog.addEventListener('close', () => this.#forget());
+    dialog.addEventListener('close', () => dialog.open || this.#forget()); // it comes late, perhaps to the next
     dialog.querySelector('form').addEventListener('submit', (event) => {
       event.preventDefault();
       this.#choose();
